@@ -1,0 +1,23 @@
+//! The baker: rigged characters in, runtime assets out.
+//!
+//! ```text
+//! glTF, VRM, built-in ─▶ import ─▶ Model ─▶ recipe ─▶ pack ─▶ asset (read by the crate `sinew`)
+//!                                    │                          │
+//!                                    └────────▶ play ◀──────────┘ ─▶ picture, GIF, glTF, array, replay
+//! ```
+
+pub mod builtin;
+pub mod error;
+pub mod export;
+pub mod import;
+pub mod model;
+pub mod pack;
+pub mod play;
+pub mod recipe;
+#[cfg(feature = "render")]
+pub mod render;
+#[cfg(feature = "render")]
+pub mod report;
+
+pub use error::Error;
+pub use model::Model;

@@ -1,0 +1,2 @@
+//! The command line `sinew`.
+fn main() {}

@@ -1,0 +1,2 @@
+//! Secondary motion for skinned characters: to be written.
+#![no_std]
