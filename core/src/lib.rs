@@ -1,2 +1,5 @@
-//! Secondary motion for skinned characters: to be written.
+//! draft
 #![no_std]
+pub mod kernel;
+mod lanes;
+pub mod math;

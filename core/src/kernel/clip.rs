@@ -1,0 +1,129 @@
+//! Sampling of glTF animation: step, linear and cubic spline (glTF 2.0, appendix C).
+//!
+//! ```text
+//! τ = (t − t₀)/(t₁ − t₀),    step: v₀,    linear: (1 − τ)·v₀ + τ·v₁, rotations by slerp
+//! cubic: (2τ³ − 3τ² + 1)·v₀ + Δ(τ³ − 2τ² + τ)·b₀ + (3τ² − 2τ³)·v₁ + Δ(τ³ − τ²)·a₁,   Δ = t₁ − t₀
+//! ```
+
+use crate::math::quat;
+
+/// How keys are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Value of the key before.
+    Step,
+    /// Linear; rotations by slerp.
+    Linear,
+    /// Cubic Hermite spline; values are stored as in-tangent, value, out-tangent.
+    CubicSpline,
+}
+
+/// Keys of one animated property of `N` components.
+#[derive(Clone, Copy, Debug)]
+pub struct Keys<'a> {
+    /// How keys are joined.
+    pub interpolation: Interpolation,
+    /// Times, s, strictly ascending, at least one.
+    pub times: &'a [f32],
+    /// Values, `N` a key (three times as many for cubic splines).
+    pub values: &'a [f32],
+}
+
+impl Keys<'_> {
+    /// Entry `part` of key `i`; `parts` entries a key.
+    fn entry<const N: usize>(&self, i: usize, part: usize, parts: usize) -> [f32; N] {
+        let start = (i * parts + part) * N;
+        core::array::from_fn(|c| self.values[start + c])
+    }
+
+    /// Value at time `t`, s; before the first and after the last key the value of that key.
+    ///
+    /// # Panics
+    ///
+    /// If there is no key, or fewer values than the keys need (a parsed asset holds neither).
+    #[must_use]
+    pub fn sample<const N: usize>(&self, t: f32) -> [f32; N] {
+        let (parts, middle) = if self.interpolation == Interpolation::CubicSpline { (3, 1) } else { (1, 0) };
+        let after = self.times.partition_point(|key| *key <= t);
+        if after == 0 || after == self.times.len() {
+            return self.entry(after.saturating_sub(1), middle, parts);
+        }
+        let (i, span) = (after - 1, self.times[after] - self.times[after - 1]);
+        let tau = (t - self.times[i]) / span;
+        let (v0, v1): ([f32; N], [f32; N]) = (self.entry(i, middle, parts), self.entry(after, middle, parts));
+        match self.interpolation {
+            Interpolation::Step => v0,
+            Interpolation::Linear => core::array::from_fn(|c| (1.0 - tau) * v0[c] + tau * v1[c]),
+            Interpolation::CubicSpline => {
+                let (b0, a1): ([f32; N], [f32; N]) = (self.entry(i, 2, 3), self.entry(after, 0, 3));
+                let (t2, t3) = (tau * tau, tau * tau * tau);
+                let weights = [
+                    (2.0 * t3 - 3.0 * t2) + 1.0,
+                    span * ((t3 - 2.0 * t2) + tau),
+                    3.0 * t2 - 2.0 * t3,
+                    span * (t3 - t2),
+                ];
+                core::array::from_fn(|c| {
+                    (weights[0] * v0[c] + weights[1] * b0[c]) + (weights[2] * v1[c] + weights[3] * a1[c])
+                })
+            }
+        }
+    }
+
+    /// Rotation at time `t`, s, normalized.
+    ///
+    /// # Panics
+    ///
+    /// As [`Self::sample`].
+    #[must_use]
+    pub fn sample_rotation(&self, t: f32) -> [f32; 4] {
+        let after = self.times.partition_point(|key| *key <= t);
+        if self.interpolation != Interpolation::Linear || after == 0 || after == self.times.len() {
+            return quat::normalize(self.sample(t));
+        }
+        let tau = (t - self.times[after - 1]) / (self.times[after] - self.times[after - 1]);
+        let (a, b) = (self.entry(after - 1, 0, 1), self.entry(after, 0, 1));
+        quat::slerp(quat::normalize(a), quat::normalize(b), tau)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TIMES: [f32; 3] = [0.0, 1.0, 3.0];
+
+    #[test]
+    fn step_linear_and_the_ends() {
+        let keys = |interpolation| Keys { interpolation, times: &TIMES, values: &[1.0, 2.0, 6.0] };
+        for (t, step, linear) in
+            [(-1.0, 1.0, 1.0), (0.5, 1.0, 1.5), (1.0, 2.0, 2.0), (2.0, 2.0, 4.0), (9.0, 6.0, 6.0)]
+        {
+            assert_eq!(keys(Interpolation::Step).sample::<1>(t), [step], "step at {t}");
+            assert_eq!(keys(Interpolation::Linear).sample::<1>(t), [linear], "linear at {t}");
+        }
+    }
+
+    /// A spline through a cubic polynomial with its own slopes is that polynomial.
+    #[test]
+    fn cubic_reproduces_a_cubic() {
+        let p = |t: f32| t * t * t - 2.0 * t + 1.0;
+        let slope = |t: f32| 3.0 * t * t - 2.0;
+        let mut values = [0.0; 9];
+        for (i, t) in TIMES.into_iter().enumerate() {
+            values[3 * i..3 * i + 3].copy_from_slice(&[slope(t), p(t), slope(t)]);
+        }
+        let keys = Keys { interpolation: Interpolation::CubicSpline, times: &TIMES, values: &values };
+        for t in [0.0, 0.3, 1.0, 1.7, 2.9, 3.0] {
+            assert!((keys.sample::<1>(t)[0] - p(t)).abs() < 1e-5, "{t}");
+        }
+    }
+
+    #[test]
+    fn one_key_is_a_constant() {
+        for interpolation in [Interpolation::Step, Interpolation::Linear] {
+            let keys = Keys { interpolation, times: &[0.7], values: &[0.0, 0.0, 0.6, 0.8] };
+            assert_eq!(keys.sample_rotation(0.0), keys.sample_rotation(5.0));
+        }
+    }
+}

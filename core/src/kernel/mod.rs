@@ -1,0 +1,8 @@
+//! One algorithm a file: free functions over slices, the equation above each.
+
+pub mod clip;
+pub mod normal;
+pub mod skin;
+pub mod spring;
+pub mod target;
+pub mod unskin;

@@ -1,0 +1,60 @@
+//! Four `f32` lanes, the same four on every target.
+//!
+//! Every operation is defined per lane and rounds once, so the vector and the scalar implementation
+//! agree bit for bit. There is no fused multiply-add and no reciprocal estimate here, and none may
+//! be added. The scalar type is the definition, compiled everywhere as the oracle of the tests.
+
+mod scalar;
+mod vector;
+
+use core::ops::{Add, Div, Mul, Sub};
+
+#[cfg(test)]
+pub(crate) use scalar::Scalar;
+pub(crate) use vector::Vector as F32x4;
+
+/// What a kernel may ask of four lanes.
+pub(crate) trait Lanes:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// All lanes equal `x`.
+    fn splat(x: f32) -> Self;
+    /// Lanes from an array.
+    fn from_array(a: [f32; 4]) -> Self;
+    /// Lanes to an array.
+    fn to_array(self) -> [f32; 4];
+    /// Square roots, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// Absolute values.
+    fn abs(self) -> Self;
+    /// Lane by lane: `value` where `a < b`, else `otherwise`; a NaN compares as false.
+    fn select_lt(a: Self, b: Self, value: Self, otherwise: Self) -> Self;
+    /// Columns of a 4×4 block given by its rows.
+    fn transpose(rows: [Self; 4]) -> [Self; 4];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every operation on awkward values: both types give the same bits.
+    #[test]
+    fn vector_agrees_with_scalar_bit_for_bit() {
+        let values = [0.0, -0.0, 1.0, -1.5, 1e-38, 3e-39, 1e30, -7.25, f32::INFINITY, 0.1];
+        let bits = |x: [f32; 4]| x.map(|x| if x.is_nan() { 0x7fc0_0000 } else { x.to_bits() });
+        let quad = |i: usize| core::array::from_fn(|j| values[(i + 3 * j) % 10]);
+        for i in 0..10 {
+            for k in 0..10 {
+                let (a, b): ([f32; 4], [f32; 4]) = (quad(i), quad(k + 1));
+                let run = |v: [[f32; 4]; 7]| v.map(bits);
+                fn all<L: Lanes>(a: [f32; 4], b: [f32; 4]) -> [[f32; 4]; 7] {
+                    let (a, b) = (L::from_array(a), L::from_array(b));
+                    let select = L::select_lt(a, b, a, b);
+                    let turned = L::transpose([a, b, a + b, a - b]);
+                    [a + b, a - b, a * b, a / b, a.abs().sqrt(), select, turned[2]].map(L::to_array)
+                }
+                assert_eq!(run(all::<F32x4>(a, b)), run(all::<Scalar>(a, b)), "{a:?} {b:?}");
+            }
+        }
+    }
+}
