@@ -1,5 +1,47 @@
-//! draft
+//! Flesh for skinned characters: bellies, ears, tails and muscles that follow through, per frame,
+//! without allocation, with the same bits on every machine.
+//!
+//! ```text
+//! pose ─▶ skin ─▶ dynamics ─▶ embed ─▶ vertex buffers
+//! ```
+//!
+//! Each arrow is one file of [`stage`]; a stage calls a few [`kernel`]s; kernels know only [`math`].
+//! [`Character`] runs the arrows in order. Read in that direction.
+//!
+//! # Conventions
+//!
+//! Metres, seconds, radians. Right-handed, +Y up, column vectors, quaternions `[x, y, z, w]` (glTF).
+//! `root_from_joint` maps joint space to the root's; *bind space* is that of the position attribute,
+//! *model space* that of the root. Arrays of vectors are `[[f32; 3]]`. The caller owns all memory.
+//!
+//! # Determinism contract
+//!
+//! Same asset, same inputs, same steps: the same bits on every supported target, with or without
+//! SIMD, at any optimization level. Only `+ − × ÷ √` and comparisons in `f32`, and the elementary
+//! functions of [`math::float`], are used; sums have one written order. The host must round to
+//! nearest and keep subnormals ([`math::canary`] tells). NaN and infinities are refused at the door.
 #![no_std]
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare bits"))]
+
+#[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
+compile_error!("x87 rounds twice: sinew needs SSE2");
+
+pub mod asset;
+mod character;
 pub mod kernel;
 mod lanes;
 pub mod math;
+pub mod stage;
+mod state;
+mod step;
+mod tunables;
+mod workspace;
+
+pub use asset::{Asset, AssetError};
+pub use character::Character;
+pub use math::affine::Affine;
+pub use stage::pose::Root;
+pub use state::StateError;
+pub use step::{Digests, Pose, StepError, Stepped};
+pub use tunables::{Region, TunableError, Tunables};
+pub use workspace::LengthError;

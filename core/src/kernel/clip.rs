@@ -87,6 +87,52 @@ impl Keys<'_> {
     }
 }
 
+/// Property of a node that a channel animates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Property {
+    /// Translation, 3 components.
+    Translation,
+    /// Rotation, 4 components.
+    Rotation,
+    /// Scale, 3 components.
+    Scale,
+}
+
+/// Channels of a clip, as rows of an asset.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Channels<'a> {
+    /// `[node, property + 4·interpolation, first key, keys, first value, 0]` a channel.
+    pub rows: &'a [[u32; 6]],
+    /// Key times of all channels.
+    pub times: &'a [f32],
+    /// Values of all channels.
+    pub values: &'a [f32],
+}
+
+impl<'a> Channels<'a> {
+    /// The channel of a row: node, property, keys; `None` where the row is not valid.
+    #[must_use]
+    pub fn channel(&self, row: &[u32; 6]) -> Option<(usize, Property, Keys<'a>)> {
+        let [node, kind, first_key, keys, first_value, zero] = row.map(|x| x as usize);
+        let (property, components) = match kind % 4 {
+            0 => (Property::Translation, 3),
+            1 => (Property::Rotation, 4),
+            2 => (Property::Scale, 3),
+            _ => return None,
+        };
+        let (interpolation, parts) = match kind / 4 {
+            0 => (Interpolation::Step, 1),
+            1 => (Interpolation::Linear, 1),
+            2 => (Interpolation::CubicSpline, 3),
+            _ => return None,
+        };
+        let times = self.times.get(first_key..first_key.checked_add(keys)?)?;
+        let count = keys.checked_mul(components * parts)?;
+        let values = self.values.get(first_value..first_value.checked_add(count)?)?;
+        (keys > 0 && zero == 0).then_some((node, property, Keys { interpolation, times, values }))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

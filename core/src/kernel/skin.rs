@@ -95,7 +95,8 @@ pub(crate) fn skin_with<L: Lanes>(
 
 /// Skins the vertices of a surface with their normals; vertex `v` has the influences of point `point_of_vertex[v]`.
 ///
-/// A blended matrix without an inverse counts as the dominant joint's; a normal without a direction stays.
+/// `positions` and `normals` go in in bind space and come out in model space. A blended matrix
+/// without an inverse counts as the dominant joint's for the normal; one without a direction stays.
 ///
 /// # Panics
 ///
@@ -104,19 +105,18 @@ pub fn skin_surface(
     palette: &[Columns],
     influences: Influences<'_>,
     point_of_vertex: &[u32],
-    (positions, normals): (&[[f32; 3]], &[[f32; 3]]),
-    (out_positions, out_normals): (&mut [[f32; 3]], &mut [[f32; 3]]),
+    positions: &mut [[f32; 3]],
+    normals: &mut [[f32; 3]],
 ) {
     let n = point_of_vertex.len();
-    let lengths = [positions.len(), normals.len(), out_positions.len(), out_normals.len()];
-    assert!(lengths == [n; 4], "skin: lengths differ");
-    for (v, point) in point_of_vertex.iter().enumerate() {
+    assert!(positions.len() == n && normals.len() == n, "skin: lengths differ");
+    for ((point, position), normal) in point_of_vertex.iter().zip(positions).zip(normals) {
         let point = *point as usize;
         let b = blend::<F32x4>(palette, &influences, point);
-        out_positions[v] = apply(&b, positions[v]);
+        *position = apply(&b, *position);
         let linear = [b[0].to_array(), b[1].to_array(), b[2].to_array()];
         let fallback = || linear_of(&palette[influences.dominant(point)]);
-        out_normals[v] = skin_normal(&linear, fallback, normals[v]);
+        *normal = skin_normal(&linear, fallback, *normal);
     }
 }
 
@@ -141,7 +141,7 @@ pub fn cofactors(m: &[[f32; 4]; 3]) -> ([[f32; 3]; 3], f32) {
 pub fn is_singular(m: &[[f32; 4]; 3], determinant: f32) -> bool {
     let square = |c: [f32; 4]| c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
     let longest = max(max(square(m[0]), square(m[1])), square(m[2]));
-    !(determinant * determinant > 1e-12 * longest * longest * longest)
+    determinant * determinant <= 1e-12 * longest * longest * longest
 }
 
 fn skin_normal(m: &[[f32; 4]; 3], fallback: impl Fn() -> [[f32; 4]; 3], n: [f32; 3]) -> [f32; 3] {
@@ -203,9 +203,8 @@ mod tests {
         let influences = Influences { stride: 1, joints: &[0], weights: &[1.0] };
         for (scale, want) in [([2.0, 1.0, 1.0], [1.0, 2.0]), ([-2.0, 1.0, 1.0], [-1.0, 2.0])] {
             let m = affine::from_trs([0.0; 3], quat::IDENTITY, scale);
-            let (mut p, mut n) = ([[0.0; 3]], [[0.0; 3]]);
-            let normal = vec3::normalize_or([1.0, 1.0, 0.0], [0.0; 3]);
-            skin_surface(&[columns(&m)], influences, &[0], (&[[0.0; 3]], &[normal]), (&mut p, &mut n));
+            let (mut p, mut n) = ([[0.0; 3]], [vec3::normalize_or([1.0, 1.0, 0.0], [0.0; 3])]);
+            skin_surface(&[columns(&m)], influences, &[0], &mut p, &mut n);
             let want = vec3::normalize_or([want[0], want[1], 0.0], [0.0; 3]);
             assert!(vec3::dot(n[0], want) > 1.0 - 1e-6, "{:?} {want:?}", n[0]);
         }
@@ -217,8 +216,8 @@ mod tests {
         let half = affine::from_trs([0.0; 3], turn(core::f32::consts::PI), [1.0; 3]);
         let palette = [columns(&affine::IDENTITY), columns(&half)];
         let influences = Influences { stride: 2, joints: &[0, 1], weights: &[0.5, 0.5] };
-        let (mut p, mut n) = ([[0.0; 3]], [[0.0; 3]]);
-        skin_surface(&palette, influences, &[0], (&[[1.0, 0.0, 0.0]], &[[1.0, 0.0, 0.0]]), (&mut p, &mut n));
+        let (mut p, mut n) = ([[1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]]);
+        skin_surface(&palette, influences, &[0], &mut p, &mut n);
         assert_eq!(n[0], [1.0, 0.0, 0.0]);
     }
 

@@ -117,7 +117,7 @@ fn unskin_four<L: Lanes>(
     for (i, out) in out.iter_mut().enumerate() {
         *out = [x[i], y[i], z[i]];
     }
-    regular != [1.0; 4]
+    regular.iter().any(|r| *r < 0.5)
 }
 
 #[cfg(test)]

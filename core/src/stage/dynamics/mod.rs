@@ -1,0 +1,3 @@
+//! Targets in, offsets out: how flesh moves about where skinning puts it.
+
+pub mod springs;

@@ -1,0 +1,110 @@
+//! Springs on the skinned targets: one a point, parameters by region.
+
+use crate::kernel::spring::{self, Knots, Spring, Step};
+use crate::math::affine::{self, Affine};
+use crate::math::vec3;
+
+/// State of all moving points at the last step. Vectors in the root's frame, model units and seconds.
+#[derive(Debug)]
+pub struct State<'a> {
+    /// Target of skinning.
+    pub x: &'a mut [[f32; 3]],
+    /// Offset from it.
+    pub y: &'a mut [[f32; 3]],
+    /// Velocity.
+    pub v: &'a mut [[f32; 3]],
+    /// Slope of the target.
+    pub slope: &'a mut [[f32; 3]],
+    /// Acceleration by gravity and wind.
+    pub f: &'a mut [[f32; 3]],
+}
+
+impl State<'_> {
+    /// The arrays, in the order in which they are saved and hashed.
+    #[must_use]
+    pub fn arrays(&self) -> [&[[f32; 3]]; 5] {
+        [self.x, self.y, self.v, self.slope, self.f]
+    }
+
+    /// Expresses the state in the frame of a root that moved: `map` takes old root space to new.
+    pub fn carry(&mut self, map: &Affine) {
+        for x in self.x.iter_mut() {
+            *x = affine::transform(map, *x);
+        }
+        for array in [&mut *self.y, &mut *self.v, &mut *self.slope, &mut *self.f] {
+            for vector in array {
+                *vector = affine::rotate(map, *vector);
+            }
+        }
+    }
+
+    /// Puts every point where it would come to rest if nothing moved from now on: `y = f/ks`.
+    pub fn settle(
+        &mut self,
+        targets: &[[f32; 3]],
+        f: &[[f32; 3]],
+        regions: &[u8],
+        springs: &[Spring],
+        rest: f32,
+    ) {
+        self.x.copy_from_slice(targets);
+        self.f.copy_from_slice(f);
+        self.v.fill([0.0; 3]);
+        self.slope.fill([0.0; 3]);
+        for ((y, f), region) in self.y.iter_mut().zip(f).zip(regions) {
+            let ks = springs[usize::from(*region)].ks;
+            let sag = if ks > 0.0 { vec3::scale(*f, 1.0 / ks) } else { [0.0; 3] };
+            let small = sag.iter().all(|c| crate::math::float::abs(*c) < rest);
+            *y = if small { [0.0; 3] } else { sag };
+        }
+    }
+
+    /// Starts the first step after a rest: the target and the flesh have its slope from the beginning.
+    pub fn start(&mut self, targets: &[[f32; 3]], dt: f32) {
+        let inverse = 1.0 / dt;
+        let moving = self.x.iter().zip(targets).zip(self.slope.iter_mut().zip(self.v.iter_mut()));
+        for ((x, target), (slope, v)) in moving {
+            *slope = vec3::scale(vec3::sub(*target, *x), inverse);
+            *v = *slope;
+        }
+    }
+
+    /// Follows targets that jumped: offsets and relative velocities stay, the jump is not felt.
+    pub fn jump(&mut self, targets: &[[f32; 3]]) {
+        self.x.copy_from_slice(targets);
+        for (v, slope) in self.v.iter_mut().zip(self.slope.iter_mut()) {
+            *v = vec3::sub(*v, *slope);
+            *slope = [0.0; 3];
+        }
+    }
+
+    /// Whether every one of up to 16 sampled points moved farther than `limit`.
+    #[must_use]
+    pub fn jumped(&self, targets: &[[f32; 3]], limit: f32) -> bool {
+        let stride = (targets.len() / 16).max(1);
+        let mut pairs = self.x.iter().zip(targets).step_by(stride);
+        !targets.is_empty()
+            && pairs.all(|(x, target)| {
+                let d = vec3::sub(*target, *x);
+                vec3::dot(d, d) > limit * limit
+            })
+    }
+
+    /// Advances every point by one step; `steps` is indexed by region. Runs of equal regions are one stream.
+    pub fn advance(&mut self, targets: &[[f32; 3]], f: &[[f32; 3]], regions: &[u8], steps: &[Step]) {
+        let mut start = 0;
+        for run in regions.chunk_by(|a, b| a == b) {
+            let range = start..start + run.len();
+            let knots = Knots {
+                x: self.x[range.clone()].as_flattened_mut(),
+                y: self.y[range.clone()].as_flattened_mut(),
+                v: self.v[range.clone()].as_flattened_mut(),
+                slope: self.slope[range.clone()].as_flattened_mut(),
+                f: self.f[range.clone()].as_flattened_mut(),
+            };
+            let step = &steps[usize::from(run[0])];
+            spring::advance(step, targets[range.clone()].as_flattened(), f[range].as_flattened(), knots);
+            start += run.len();
+        }
+    }
+}

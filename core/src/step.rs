@@ -1,0 +1,69 @@
+//! What goes into a step and what comes out of it.
+
+use crate::math::affine::Affine;
+use crate::stage::pose::Root;
+use crate::workspace::LengthError;
+use core::fmt;
+
+/// What moves the character in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose<'a> {
+    /// Where the root is in the world.
+    pub root: Root,
+    /// Transform of every joint relative to the root, in the asset's order.
+    pub root_from_joint: &'a [Affine],
+}
+
+/// Why a step was refused; the state is as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum StepError {
+    /// `dt` is NaN or infinite.
+    TimeNotFinite,
+    /// The root is not finite, or its rotation is zero.
+    BadRoot,
+    /// The pose has another number of joints than the asset.
+    JointCount(LengthError),
+    /// A joint's transform is not finite or larger than `1e15`.
+    BadJoint(u32),
+    /// The asset has no such clip.
+    NoSuchClip(u32),
+}
+
+impl fmt::Display for StepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TimeNotFinite => write!(f, "dt is not a finite number of seconds"),
+            Self::BadRoot => write!(f, "the root's transform is not finite, or its rotation is zero"),
+            Self::JointCount(LengthError { expected, found }) => {
+                write!(f, "the pose has {found} joints, the asset has {expected}")
+            }
+            Self::BadJoint(i) => write!(f, "the transform of joint {i} is not finite or too large"),
+            Self::NoSuchClip(i) => write!(f, "the asset has no clip {i}"),
+        }
+    }
+}
+
+impl core::error::Error for StepError {}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stepped {
+    /// The flesh advanced: the buffers are new.
+    Advanced,
+    /// Nothing was due; the time is kept for the next step.
+    Held,
+}
+
+/// Digests of what each stage made in the last step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Digests {
+    /// Palette.
+    pub pose: u64,
+    /// Targets and accelerations.
+    pub skin: u64,
+    /// State of the springs.
+    pub dynamics: u64,
+    /// Offsets, positions and normals.
+    pub embed: u64,
+}
