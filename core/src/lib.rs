@@ -33,6 +33,7 @@ pub mod asset;
 mod character;
 pub mod kernel;
 mod lanes;
+mod life;
 pub mod math;
 pub mod stage;
 mod state;
