@@ -6,7 +6,8 @@
 //!
 //! Little-endian; the digest covers every byte before it.
 
-use crate::character::{Character, Life, Phase, surface};
+use crate::character::{Character, surface};
+use crate::life::{Life, Phase};
 use crate::math::digest;
 use crate::stage::embed;
 use crate::stage::pose::Root;
