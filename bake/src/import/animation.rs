@@ -103,6 +103,7 @@ fn normalize(rotation: &mut [f32; 4]) {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "the expected numbers are copied or exact in f32")]
 mod tests {
     use super::*;
 

@@ -33,20 +33,26 @@ pub(super) fn join(
     rows: &[u16],
     place: &str,
 ) -> Result<Influences, Error> {
-    let mut blends = Vec::with_capacity(vertices);
+    // All blends one after the other, and where each ends.
+    let (mut flat, mut ends) = (Vec::with_capacity(4 * vertices), Vec::with_capacity(vertices));
+    let mut most = 0;
     for vertex in 0..vertices {
         let entries =
             sets.iter().flat_map(|(joints, weights)| joints[vertex].into_iter().zip(weights[vertex]));
         let blend = blend(entries, rows).map_err(|(problem, remedy)| {
             source.error(format!("{place}, vertex {vertex}"), problem, remedy)
         })?;
-        blends.push(blend);
+        most = most.max(blend.len());
+        flat.extend(blend);
+        ends.push(flat.len());
     }
-    let most = blends.iter().map(Vec::len).max().unwrap_or(0);
     let stride = most.next_multiple_of(4).max(4);
-    source.charge(stride as u64 * vertices as u64, place)?;
+    source.charge(2 * stride as u64 * vertices as u64, place)?;
     let mut out = Influences { stride, ..Influences::default() };
-    for blend in &blends {
+    let mut start = 0;
+    for end in ends {
+        let blend = &flat[start..end];
+        start = end;
         // Unused places repeat the dominant joint: a valid row that is read anyway.
         let unused = blend.first().map_or(0, |(row, _)| *row);
         let padded = blend.iter().copied().chain(core::iter::repeat((unused, 0.0)));

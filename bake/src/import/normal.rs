@@ -40,6 +40,7 @@ fn weld(positions: &[[f32; 3]]) -> Vec<usize> {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "the expected numbers are exact in f32")]
 mod tests {
     use super::*;
 

@@ -12,8 +12,8 @@ use crate::Error;
 pub(super) const EXPORT_AGAIN: &str = "export the file again, and check it with the glTF validator";
 
 /// Most values (vertex components, indices, keys) that are read from one file: a small file may refer to the same
-/// bytes any number of times.
-const VALUE_LIMIT: u64 = 1 << 27;
+/// bytes any number of times. A character of a million vertices takes half of it.
+const VALUE_LIMIT: u64 = 1 << 26;
 
 /// A glTF file with its buffers.
 #[derive(Debug)]
