@@ -31,6 +31,7 @@ mod character;
 pub mod kernel;
 mod lanes;
 pub mod math;
+pub mod replay;
 pub mod stage;
 mod state;
 mod step;
