@@ -63,7 +63,7 @@ impl Character<'_> {
             return Err(StepError::TimeNotFinite);
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturating")]
-        let frames = float::min(duration / dt, 100_000.0) as u32;
+        let frames = float::min(duration / dt + 0.5, 100_000.0) as u32;
         self.settle();
         for _ in 0..loops.min(1_000) {
             for frame in 0..frames {
