@@ -3,6 +3,7 @@
 use crate::asset::{Parsed, RawAsset};
 use crate::memory::{Aligned, address};
 use self_cell::{MutBorrow, self_cell};
+use sinew::replay::{Event, RecordError, Tape};
 use sinew::{Affine, Character, Pose, Root, Stepped, Tunables};
 use std::rc::Rc;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
@@ -28,6 +29,8 @@ self_cell! {
 pub struct RawCharacter {
     living: Living,
     pose: Vec<Affine>,
+    /// While it is recorded.
+    tape: Option<Tape<Vec<u8>>>,
     /// Made when first asked for: share of the largest offset of each render vertex.
     heat: Vec<f32>,
     /// Made when first asked for: skinned positions, then normals.
@@ -62,7 +65,8 @@ impl RawCharacter {
             Character::new(*owner.asset.borrow_dependent(), owner.memory.borrow_mut().floats_mut())
         })?;
         let pose = filled(joints, sinew::math::affine::IDENTITY)?;
-        Ok(Self { living, pose, heat: Vec::new(), skinned: Vec::new(), state: Aligned::default() })
+        let (heat, skinned, state) = (Vec::new(), Vec::new(), Aligned::default());
+        Ok(Self { living, pose, tape: None, heat, skinned, state })
     }
 
     fn get(&self) -> &Character<'_> {
@@ -111,9 +115,12 @@ impl RawCharacter {
         dt: f32,
     ) -> Result<bool, JsError> {
         let root = Root { translation: [x, y, z], rotation: [qx, qy, qz, qw] };
-        let pose = Pose { root, root_from_joint: &self.pose };
-        let stepped = self.living.with_dependent_mut(|_, character| character.step(pose, dt))?;
-        Ok(stepped == Stepped::Advanced)
+        let (tape, pose) = (&mut self.tape, Pose { root, root_from_joint: &self.pose });
+        let stepped = self.living.with_dependent_mut(|_, character| match tape {
+            Some(tape) => tape.step(character, pose, dt),
+            None => Ok(character.step(pose, dt)?),
+        });
+        self.told(stepped)
     }
 
     /// Advances by `dt` seconds to a clip at `time`, s; true where the buffers are new.
@@ -136,15 +143,41 @@ impl RawCharacter {
         dt: f32,
     ) -> Result<bool, JsError> {
         let root = Root { translation: [x, y, z], rotation: [qx, qy, qz, qw] };
-        let step = |_: &_, character: &mut Character<'_>| character.step_clip(clip, time, root, dt);
-        Ok(self.living.with_dependent_mut(step)? == Stepped::Advanced)
+        let tape = &mut self.tape;
+        let stepped = self.living.with_dependent_mut(|_, character| match tape {
+            Some(tape) => tape.step_clip(character, clip, time, root, dt),
+            None => Ok(character.step_clip(clip, time, root, dt)?),
+        });
+        self.told(stepped)
+    }
+
+    /// What a step did; a recording that has no room left ends.
+    fn told(&mut self, stepped: Result<Stepped, RecordError>) -> Result<bool, JsError> {
+        self.keep(stepped).map(|stepped| stepped == Stepped::Advanced)
+    }
+
+    fn keep<T>(&mut self, result: Result<T, RecordError>) -> Result<T, JsError> {
+        if matches!(result, Err(RecordError::SinkFull)) {
+            self.tape = None;
+        }
+        Ok(result?)
+    }
+
+    /// Does `event`, on the tape where there is one.
+    fn event(&mut self, event: &Event<'_>) -> Result<(), JsError> {
+        let tape = &mut self.tape;
+        let done = self.living.with_dependent_mut(|_, character| match tape {
+            Some(tape) => tape.event(character, event),
+            None => event.apply(character),
+        });
+        self.keep(done)
     }
 
     /// Plays a clip in a loop, unseen.
     ///
     /// # Errors
     ///
-    /// As [`Character::warm_up`].
+    /// As [`Character::warm_up`], and while it is recorded.
     #[allow(clippy::too_many_arguments, reason = "numbers cross without an allocation, arrays do not")]
     pub fn warm_up(
         &mut self,
@@ -159,34 +192,57 @@ impl RawCharacter {
         qw: f32,
         dt: f32,
     ) -> Result<(), JsError> {
+        if self.tape.is_some() {
+            return Err(JsError::new("warm up before recording: a replay cannot hold it"));
+        }
         let root = Root { translation: [x, y, z], rotation: [qx, qy, qz, qw] };
         self.living.with_dependent_mut(|_, character| character.warm_up(clip, loops, root, dt))?;
         Ok(())
     }
 
     /// [`Character::reset`].
-    pub fn reset(&mut self) {
-        self.living.with_dependent_mut(|_, character| character.reset());
+    ///
+    /// # Errors
+    ///
+    /// Without memory for the recording.
+    pub fn reset(&mut self) -> Result<(), JsError> {
+        self.event(&Event::Reset)
     }
 
     /// [`Character::settle`].
-    pub fn settle(&mut self) {
-        self.living.with_dependent_mut(|_, character| character.settle());
+    ///
+    /// # Errors
+    ///
+    /// Without memory for the recording.
+    pub fn settle(&mut self) -> Result<(), JsError> {
+        self.event(&Event::Settle)
     }
 
     /// [`Character::teleport`].
-    pub fn teleport(&mut self) {
-        self.living.with_dependent_mut(|_, character| character.teleport());
+    ///
+    /// # Errors
+    ///
+    /// Without memory for the recording.
+    pub fn teleport(&mut self) -> Result<(), JsError> {
+        self.event(&Event::Teleport)
     }
 
     /// [`Character::freeze`].
-    pub fn freeze(&mut self, frozen: bool) {
-        self.living.with_dependent_mut(|_, character| character.freeze(frozen));
+    ///
+    /// # Errors
+    ///
+    /// Without memory for the recording.
+    pub fn freeze(&mut self, frozen: bool) -> Result<(), JsError> {
+        self.event(&Event::Freeze(frozen))
     }
 
     /// [`Character::set_rate_divisor`].
-    pub fn set_rate_divisor(&mut self, divisor: u32) {
-        self.living.with_dependent_mut(|_, character| character.set_rate_divisor(divisor));
+    ///
+    /// # Errors
+    ///
+    /// Without memory for the recording.
+    pub fn set_rate_divisor(&mut self, divisor: u32) -> Result<(), JsError> {
+        self.event(&Event::Divisor(divisor))
     }
 
     /// [`Tunables::to_words`].
@@ -203,8 +259,7 @@ impl RawCharacter {
     pub fn set_tunables(&mut self, words: &[f32]) -> Result<(), JsError> {
         let words = words.try_into().map_err(|_| JsError::new("another number of tunables"))?;
         let tunables = Tunables::from_words(words)?;
-        self.living.with_dependent_mut(|_, character| character.set_tunables(&tunables))?;
-        Ok(())
+        self.event(&Event::Tunables(tunables))
     }
 
     /// Bytes of a saved state.
@@ -232,8 +287,36 @@ impl RawCharacter {
     ///
     /// As [`Character::load_state`]; nothing changes then.
     pub fn load_state(&mut self, bytes: &[u8]) -> Result<(), JsError> {
-        self.living.with_dependent_mut(|_, character| character.load_state(bytes))?;
+        self.event(&Event::Load(bytes))
+    }
+
+    /// Begins a recording, with a snapshot after every `snapshot_every`-th step.
+    ///
+    /// # Errors
+    ///
+    /// While it is recorded, and without memory for it.
+    pub fn record(&mut self, snapshot_every: u32) -> Result<(), JsError> {
+        if self.tape.is_some() {
+            return Err(JsError::new("already recording: stop that recording first"));
+        }
+        self.tape = Some(Tape::begin(self.get(), snapshot_every, Vec::new())?);
         Ok(())
+    }
+
+    /// Whether it is recorded.
+    #[must_use]
+    pub fn is_recording(&self) -> bool {
+        self.tape.is_some()
+    }
+
+    /// Ends the recording and returns the replay.
+    ///
+    /// # Errors
+    ///
+    /// While it is not recorded, and without memory for the end.
+    pub fn stop_recording(&mut self) -> Result<Vec<u8>, JsError> {
+        let tape = self.tape.take().ok_or_else(|| JsError::new("nothing is being recorded"))?;
+        Ok(tape.finish(self.get())?.0)
     }
 
     /// Digests of what pose, skin, dynamics and embed made.

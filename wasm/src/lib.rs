@@ -8,6 +8,7 @@ pub mod asset;
 pub mod bench;
 pub mod character;
 mod memory;
+pub mod replay;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
