@@ -1,1 +1,7 @@
-//! To be written.
+//! The built-in character.
+use crate::Model;
+/// The character.
+#[must_use]
+pub fn character() -> Model {
+    Model::default()
+}

@@ -57,7 +57,7 @@ fn channel(
     };
     let times = source.floats::<1>(sampler.input, &format!("{place}, times"))?.into_flattened();
     let values_place = format!("{place}, values");
-    let mut values = match property {
+    let values = match property {
         Property::Rotation => source.floats::<4>(sampler.output, &values_place)?.into_flattened(),
         Property::Translation | Property::Scale => {
             source.floats::<3>(sampler.output, &values_place)?.into_flattened()
@@ -70,7 +70,6 @@ fn channel(
             format!("{} values where {} keys need {}", values.len(), times.len(), times.len() * per_key);
         return Err(source.damaged(place, problem));
     }
-    values.truncate(times.len() * per_key);
     if !times.iter().chain(&values).all(|x| x.is_finite()) {
         return Err(source.error(place, "a key is not finite", "repair the clip where it was made"));
     }

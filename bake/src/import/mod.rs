@@ -1,6 +1,6 @@
 //! glTF 2.0 and VRM files to [`Model`].
 //!
-//! The crate `gltf` gives the structure of the JSON; bytes are read by [`accessor`], which checks every range
+//! The crate `gltf` gives the structure of the JSON; bytes are read by `accessor`, which checks every range
 //! before it reads, since nothing in a file can be trusted. What a file may not need is left alone: cameras,
 //! lights, morph targets, points and lines.
 //!

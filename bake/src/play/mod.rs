@@ -48,7 +48,7 @@ pub enum Motion {
 }
 
 /// One frame of a character, model space.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Frame {
     /// Number of the frame.
     pub index: u32,

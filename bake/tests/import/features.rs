@@ -290,6 +290,26 @@ fn channels_of_all_kinds_are_read() {
 }
 
 #[test]
+fn channels_without_keys_and_values_without_key_are_dropped() {
+    let mut b = square();
+    let none = b.floats("SCALAR", 0, &[]);
+    let one = b.floats("SCALAR", 1, &[0.5]);
+    let moves = b.floats("VEC3", 2, &[1., 2., 3., 4., 5., 6.]);
+    let channel =
+        |sampler: usize, path: &str| json!({"sampler": sampler, "target": {"node": 2, "path": path}});
+    let animation = json!({
+        "name": "still",
+        "samplers": [{"input": none, "output": moves}, {"input": one, "output": moves}],
+        "channels": [channel(0, "scale"), channel(1, "translation")],
+    });
+    b.push("animations", animation);
+    let model = b.import().unwrap();
+    let clip = &model.clips[0];
+    assert_eq!((clip.name.as_str(), clip.duration, clip.channels.len()), ("still", 0.5, 1));
+    assert_eq!(clip.channels[0].values, [1.0, 2.0, 3.0]);
+}
+
+#[test]
 fn cameras_lights_and_odd_skeleton_roots_are_no_obstacle() {
     let mut b = square();
     b.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]);
