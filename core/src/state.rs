@@ -55,8 +55,6 @@ impl core::error::Error for StateError {}
 struct Writer<'a>(&'a mut [u8]);
 
 impl Writer<'_> {
-    // Not inlined: there are a dozen callers, and each would carry it.
-    #[inline(never)]
     fn put(&mut self, bytes: &[u8]) {
         let (head, rest) = core::mem::take(&mut self.0).split_at_mut(bytes.len());
         head.copy_from_slice(bytes);

@@ -241,8 +241,6 @@ impl<'a> Sections<'a> {
         if found != end { Err(AssetError::WrongLength { expected: end, found }) } else { Ok(Self(sections)) }
     }
 
-    // Not inlined: there are two dozen callers, and each would carry it.
-    #[inline(never)]
     fn cast<T: bytemuck::AnyBitPattern>(&self, section: Section) -> Result<&'a [T], AssetError> {
         let bytes = Section::ALL.iter().position(|s| *s == section).and_then(|i| self.0.get(i));
         bytemuck::try_cast_slice(bytes.copied().unwrap_or_default()).map_err(|_| AssetError::Misaligned)
