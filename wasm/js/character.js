@@ -128,6 +128,18 @@ export class Character {
     this.#live().load_state(bytesOf(bytes, 'loadState(bytes)'));
   }
 
+  record(snapshotEvery = 60) {
+    this.#live().record(snapshotEvery);
+  }
+
+  get recording() {
+    return this.#live().is_recording();
+  }
+
+  stopRecording() {
+    return this.#live().stop_recording();
+  }
+
   get digests() {
     const [pose, skin, dynamics, embed] = this.#live().digests();
     return { pose, skin, dynamics, embed };

@@ -4,6 +4,7 @@ import { memory } from './load.js';
 export { Asset } from './asset.js';
 export { Character } from './character.js';
 export { init, initSync, simd } from './load.js';
+export { verify } from './replay.js';
 
 export function floatEnvironment() {
   memory();
