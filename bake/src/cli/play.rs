@@ -155,9 +155,8 @@ fn array(out: &Path, player: &mut Player<'_>, flesh: bool) -> Result<Summary, Er
         npy::header(file, player.frames, vertices)?;
         let mut failed = None;
         result = every(player, |frame| {
-            npy::frame(file, shown(frame, flesh).0).map_err(|e| {
+            npy::frame(file, shown(frame, flesh).0).inspect_err(|e| {
                 failed = Some(e.kind());
-                e
             })
         });
         failed.map_or(Ok(()), |kind| Err(io::Error::from(kind)))
