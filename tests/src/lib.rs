@@ -1,1 +1,3 @@
-//! To be written.
+//! What the tests of sinew share: small characters, oracles, comparisons.
+
+pub mod asset_bytes;
