@@ -1,3 +1,4 @@
 //! What the tests of sinew share: small characters, oracles, comparisons.
 
 pub mod asset_bytes;
+pub mod session;
