@@ -338,7 +338,10 @@ fn causes_are_told_when_they_are_known() {
     assert_eq!((found.frame, found.stage, found.cause), (0, Some(Stage::Skin), Cause::Unknown));
     bytes[kernel] += 1;
     reseal(&mut bytes, kernel, 2, u64::MAX, HeaderField::KernelVersion.index());
-    assert_eq!(difference(&bytes).cause, Cause::Kernel { recorded: 2, here: 1 });
+    let cause = Cause::Kernel { recorded: 2, here: 1 };
+    assert_eq!(difference(&bytes).cause, cause);
+    assert_eq!(Replay::parse(&bytes).expect("inputs are whole").suspect(), Some(cause));
+    assert_eq!(Replay::parse(&recorded(0)).expect("a whole replay").suspect(), None);
     bytes[outcome + 8] = 0b11_0000; // a recorder that flushed subnormals
     reseal(&mut bytes, outcome, 11, 0, 5);
     let found = difference(&bytes);
