@@ -8,7 +8,6 @@ use crate::kernel::spring::{Spring, Step};
 use crate::kernel::unskin::{self, Limit};
 use crate::life::{Life, Phase};
 use crate::math::affine::{self, Affine};
-use crate::math::digest::Digest;
 use crate::math::{float, noise, quat, vec3};
 use crate::stage::embed::Surface;
 use crate::stage::pose::{Root, Skeleton};
@@ -333,19 +332,7 @@ impl<'a> Character<'a> {
     /// Digests of what each stage made.
     #[must_use]
     pub fn digests(&self) -> Digests {
-        let m = &self.memory;
-        let of = |arrays: &[&[f32]]| {
-            let mut digest = Digest::default();
-            arrays.iter().for_each(|a| digest.floats(a));
-            digest.finish()
-        };
-        let state = m.state.arrays().map(<[_]>::as_flattened);
-        Digests {
-            pose: of(&[m.palette.as_flattened().as_flattened()]),
-            skin: of(&[m.targets.as_flattened(), m.f.as_flattened()]),
-            dynamics: of(&state),
-            embed: of(&[m.offsets.as_flattened(), m.positions.as_flattened(), m.normals.as_flattened()]),
-        }
+        Digests::of(&self.memory)
     }
 }
 

@@ -35,6 +35,7 @@ pub mod kernel;
 mod lanes;
 mod life;
 pub mod math;
+pub mod replay;
 pub mod stage;
 mod state;
 mod step;
