@@ -12,7 +12,8 @@ use crate::report::Step;
 use crate::toolchain::Toolchain;
 use crate::{npm, process, report, sizes, workspace};
 
-const TARGET: &str = "wasm32-unknown-unknown";
+/// The target of all modules.
+pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 /// Changed when the layout changes, so that packages laid out by an older version are made again.
 const LAYOUT: u32 = 1;
 /// Leaves no room for `relaxed-simd`, whose results depend on the machine.

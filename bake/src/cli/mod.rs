@@ -5,6 +5,7 @@ mod inspect;
 mod load;
 mod pictures;
 mod play;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -29,6 +30,8 @@ enum Command {
     Bake(bake::Arguments),
     /// Run the runtime on a clip; the ending of OUT says what comes out
     Play(play::Arguments),
+    /// Replay a recording and compare every frame, bit for bit
+    Verify(verify::Arguments),
     /// Say what is in a .glb, .vrm, .sinew or .replay
     Inspect {
         /// The file
@@ -49,6 +52,7 @@ pub(super) fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Bake(a) => bake::run(a),
         Command::Play(a) => play::run(a),
+        Command::Verify(a) => verify::run(a),
         Command::Inspect { file } => inspect::run(file),
     };
     match outcome {

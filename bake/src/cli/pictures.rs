@@ -30,12 +30,10 @@ impl<'a> Pictures<'a> {
 
     /// Camera, scene and width of a picture that shows all frames.
     fn stage(&self, frames: &[Frame]) -> (Camera, Scene<'a>, usize) {
-        let points = || {
-            let all = frames.iter().flat_map(|f| f.flesh.iter().chain(&f.skinned));
-            all.map(|p| DVec3::from_array(p.map(f64::from)))
-        };
-        let low = points().reduce(DVec3::min).unwrap_or_default();
-        let high = points().reduce(DVec3::max).unwrap_or(DVec3::ONE);
+        let all = frames.iter().step_by(4).flat_map(|f| f.flesh.iter().chain(&f.skinned));
+        let points: Vec<DVec3> = all.step_by(3).map(|p| DVec3::from_array(p.map(f64::from))).collect();
+        let low = points.iter().copied().reduce(DVec3::min).unwrap_or_default();
+        let high = points.iter().copied().reduce(DVec3::max).unwrap_or(DVec3::ONE);
         let extent = high - low;
         let across = (extent.x * libm::cos(VIEW.0)).abs() + (extent.z * libm::sin(VIEW.0)).abs();
         let aspect = (across / extent.y.max(1e-9) * 1.05).clamp(0.75, 1.6);
@@ -48,7 +46,7 @@ impl<'a> Pictures<'a> {
         let width = (self.height as f64 * aspect).round() as usize;
         #[allow(clippy::cast_precision_loss, reason = "pixels")]
         let aspect = width as f64 / self.height as f64;
-        let camera = Camera::framing(low, high, aspect, VIEW.0, VIEW.1);
+        let camera = Camera::framing(&points, aspect, VIEW.0, VIEW.1);
         (camera, Scene::new(self.model, low.y), width)
     }
 

@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     /// Height of pictures, pixels
     #[arg(long, default_value_t = 360)]
     height: u16,
-    /// What to write: .png (contact sheet), .gif, .glb (morph animation), .npy (frames × vertices × 3), .json
+    /// What to write: .png (contact sheet), .gif, .glb (morph animation), .npy (frames × vertices × 3), .replay, .json
     #[arg(short, long)]
     out: PathBuf,
 }
@@ -106,13 +106,14 @@ fn write(arguments: &Arguments, model: &Model, player: &mut Player<'_>) -> Resul
         "npy" => array(out, player, flesh),
         "glb" => animation(out, model, player, flesh),
         "json" => figures(out, model, player),
+        "replay" => replay(out, player),
         "png" => each_twice(player, |player| pictures.sheet(out, player)),
         "gif" => each_twice(player, |player| pictures.gif(out, player)),
         _ => Err(Error::unusable(
             out.display().to_string(),
             "--out",
             format!("the ending `.{ending}` is not known"),
-            "choose .png, .gif, .glb, .npy or .json",
+            "choose .png, .gif, .glb, .npy, .replay or .json",
         )),
     }
 }
@@ -155,9 +156,8 @@ fn array(out: &Path, player: &mut Player<'_>, flesh: bool) -> Result<Summary, Er
         npy::header(file, player.frames, vertices)?;
         let mut failed = None;
         result = every(player, |frame| {
-            npy::frame(file, shown(frame, flesh).0).map_err(|e| {
+            npy::frame(file, shown(frame, flesh).0).inspect_err(|e| {
                 failed = Some(e.kind());
-                e
             })
         });
         failed.map_or(Ok(()), |kind| Err(io::Error::from(kind)))
@@ -178,6 +178,14 @@ fn animation(out: &Path, model: &Model, player: &mut Player<'_>, flesh: bool) ->
         Ok(())
     })?;
     export::write_bytes(out, &morph::to_glb(model, clip_name(&player.motion), &frames)?)?;
+    Ok(summary)
+}
+
+fn replay(out: &Path, player: &mut Player<'_>) -> Result<Summary, Error> {
+    player.record()?;
+    let summary = every(player, |_| Ok(()))?;
+    let (bytes, _) = player.recorded()?;
+    export::write_bytes(out, &bytes)?;
     Ok(summary)
 }
 

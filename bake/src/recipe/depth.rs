@@ -5,7 +5,7 @@
 //! ```text
 //! d = distance(p, b)                       depth, body sizes
 //! ρ = d / r,   r = 40th percentile of d over the joint's points      1 on a limb, 2 on a belly, 3 on an ear
-//! softness = S(ρ; 1.15, 2.2) · S(d; 0.025, 0.11),     S the smooth step
+//! softness = max( L(ρ; 1.15, 3.3) · S(d; 0.025, 0.11),  ½·S(d; 0.085, 0.17) ),     L a ramp, S the smooth step
 //! ```
 //!
 //! A joint without children has the segment to the middle of its points: a skull is round about it,

@@ -20,6 +20,9 @@ pub use rules::{Recipe, Rule};
 use crate::{Error, Model};
 use surface::Surface;
 
+/// Softness below this is smoothing's rim, not flesh.
+const RIM: f64 = 0.03;
+
 /// Where flesh is.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flesh {
@@ -48,7 +51,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     let mut softness = depth::softness(model, &surface);
     surface.join_small_parts(&mut softness);
     surface.smooth(&mut softness);
-    stretch(&mut softness);
+    stretch(&surface, &mut softness);
     let partners = mirror::partners(&surface);
     if let Some(partners) = &partners {
         mirror::average(&mut softness, partners);
@@ -77,12 +80,18 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     })
 }
 
-/// Cuts off the faint rim of smoothing and lets the softest place reach 1.
-fn stretch(softness: &mut [f64]) {
-    let most = softness.iter().copied().fold(0.0, f64::max);
-    if most > 0.02 {
-        let rim = 0.06 * most;
-        softness.iter_mut().for_each(|s| *s = ((*s - rim) / (most - rim)).clamp(0.0, 1.0));
+/// Cuts off the faint rim of smoothing; each patch of flesh then reaches the cube root of what it had.
+fn stretch(surface: &Surface, softness: &mut [f64]) {
+    softness.iter_mut().for_each(|s| *s = (*s - RIM).max(0.0));
+    let patch = surface.patches(softness);
+    let mut most = vec![0.0_f64; patch.iter().max().map_or(0, |p| p + 1)];
+    for (p, s) in patch.iter().zip(&*softness) {
+        most[*p] = most[*p].max(*s);
+    }
+    for (p, s) in patch.iter().zip(softness) {
+        if most[*p] > 0.0 {
+            *s = (*s / most[*p] * libm::cbrt(most[*p])).clamp(0.0, 1.0);
+        }
     }
 }
 

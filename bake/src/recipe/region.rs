@@ -4,7 +4,7 @@
 //! flesh reaches from its bones, the slower it swings, as pendulums do: `f ∝ 1/√reach`.
 
 use super::rules::Recipe;
-use super::surface::{Surface, parts};
+use super::surface::Surface;
 use crate::Model;
 use crate::pack::narrow;
 use serde::{Deserialize, Serialize};
@@ -41,17 +41,10 @@ pub(super) fn regions(
     softness: &[f64],
     recipe: &Recipe,
 ) -> (Vec<u8>, Vec<Region>) {
-    let soft = |i: &usize| softness[*i] > 0.0;
-    let graph: Vec<Vec<usize>> = surface
-        .neighbours
-        .iter()
-        .enumerate()
-        .map(|(i, n)| if soft(&i) { n.iter().copied().filter(soft).collect() } else { Vec::new() })
-        .collect();
-    let patch_of_point = parts(&graph);
+    let patch_of_point = surface.patches(softness);
     let nodes = model.rest_transforms();
     let mut patches: BTreeMap<usize, Patch> = BTreeMap::new();
-    for (i, s) in softness.iter().enumerate().filter(|(i, _)| soft(i)) {
+    for (i, s) in softness.iter().enumerate().filter(|(_, s)| **s > 0.0) {
         let patch = patches.entry(patch_of_point[i]).or_default();
         let joint = surface.dominant(i);
         let at = nodes[model.joints[joint].node].w_axis.truncate();

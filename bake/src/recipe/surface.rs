@@ -72,6 +72,15 @@ impl Surface {
         self.weights[point].iter().max_by(heavier).map_or(0, |(j, _)| *j)
     }
 
+    /// Connected patches of flesh: a number for each point, by itself where there is no softness.
+    pub(super) fn patches(&self, softness: &[f64]) -> Vec<usize> {
+        let soft = |i: &usize| softness[*i] > 0.0;
+        let around = |(i, n): (usize, &Vec<usize>)| {
+            if soft(&i) { n.iter().copied().filter(soft).collect() } else { Vec::new() }
+        };
+        parts(&self.neighbours.iter().enumerate().map(around).collect::<Vec<Vec<usize>>>())
+    }
+
     /// Gives each small part (an eye, a button) one softness: that of the large surface nearest to it.
     pub(super) fn join_small_parts(&self, softness: &mut [f64]) {
         let count = self.part.iter().max().map_or(0, |p| p + 1);
@@ -189,7 +198,7 @@ fn neighbours(model: &Model, point_of_vertex: &[usize], count: usize) -> Vec<Vec
 }
 
 /// Connected parts of a graph, numbered in order of their first point.
-pub(super) fn parts(neighbours: &[Vec<usize>]) -> Vec<usize> {
+fn parts(neighbours: &[Vec<usize>]) -> Vec<usize> {
     let mut part = vec![usize::MAX; neighbours.len()];
     let mut count = 0;
     for start in 0..neighbours.len() {

@@ -17,26 +17,30 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera that sees the box `low..high` whole, from `azimuth` (0 is from +Z) and `elevation`, radians.
+    /// A camera that sees all `points`, from `azimuth` (0 is from +Z) and `elevation`, radians.
     #[must_use]
-    pub fn framing(low: DVec3, high: DVec3, aspect: f64, azimuth: f64, elevation: f64) -> Self {
-        let center = (low + high) * 0.5;
+    pub fn framing(points: &[DVec3], aspect: f64, azimuth: f64, elevation: f64) -> Self {
         let (sa, ca) = (libm::sin(azimuth), libm::cos(azimuth));
         let (se, ce) = (libm::sin(elevation), libm::cos(elevation));
         let back = DVec3::new(sa * ce, se, ca * ce);
         let right = DVec3::new(ca, 0.0, -sa);
         let up = back.cross(right);
         let tangent = libm::tan(0.5 * FIELD);
-        let corners = (0..8).map(|i| {
-            let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
-            DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z)) - center
+        let extent = |axis: DVec3| {
+            let along = points.iter().map(|p| p.dot(axis));
+            along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)))
+        };
+        let middle = |axis: DVec3| {
+            let (a, b) = extent(axis);
+            if a <= b { axis * (0.5 * (a + b)) } else { DVec3::ZERO }
+        };
+        let center = middle(right) + middle(up) + middle(back);
+        // Each point asks for a distance at which it is inside the frame.
+        let needed = points.iter().map(|p| {
+            let c = *p - center;
+            (c.dot(right).abs() / aspect).max(c.dot(up).abs()) / tangent + c.dot(back)
         });
-        // Each corner asks for a distance at which it is inside the frame.
-        let needed = corners.map(|c| {
-            let across = (c.dot(right).abs() / aspect).max(c.dot(up).abs()) / tangent;
-            across + c.dot(back)
-        });
-        let distance = needed.fold(1e-6, f64::max) * 1.06;
+        let distance = needed.fold(1e-6, f64::max) * 1.08;
         let axes = [right / (tangent * aspect), up / tangent, back];
         Self { eye: center + back * distance, axes, aspect }
     }
@@ -57,14 +61,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_corner_is_in_the_frame() {
+    fn every_point_is_in_the_frame() {
         let (low, high) = (DVec3::new(-3.0, 0.0, -1.0), DVec3::new(2.0, 7.0, 9.0));
+        let pick = |i: usize, b: usize, a: f64, c: f64| if i >> b & 1 == 0 { a } else { c };
+        let corner =
+            |i| DVec3::new(pick(i, 0, low.x, high.x), pick(i, 1, low.y, high.y), pick(i, 2, low.z, high.z));
+        let corners: Vec<DVec3> = (0..8).map(corner).collect();
         for (azimuth, aspect) in [(0.0, 1.0), (0.7, 1.6), (2.5, 0.6)] {
-            let camera = Camera::framing(low, high, aspect, azimuth, 0.2);
-            for i in 0..8 {
-                let pick = |b: usize, a: f64, c: f64| if i >> b & 1 == 0 { a } else { c };
-                let p = DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z));
-                let q = camera.project(p, 100.0).unwrap();
+            let camera = Camera::framing(&corners, aspect, azimuth, 0.2);
+            for p in &corners {
+                let q = camera.project(*p, 100.0).unwrap();
                 assert!(q.x > 0.0 && q.x < 100.0 * aspect && q.y > 0.0 && q.y < 100.0, "{q:?}");
             }
         }

@@ -219,7 +219,7 @@ fn lit(albedo: Vec3, n: Vec3, eye: Vec3) -> Vec3 {
     let g4 = gloss * gloss * gloss * gloss;
     let edge = 1.0 - n.dot(eye).max(0.0);
     let rim = edge * edge * edge * edge * 0.18;
-    albedo * diffuse + Vec3::splat(g4 * g4 * g4 * 0.10) + Vec3::splat(rim * (0.5 + 0.5 * n.y))
+    albedo * diffuse * 0.86 + Vec3::splat(g4 * g4 * g4 * 0.10) + Vec3::splat(rim * (0.5 + 0.5 * n.y))
 }
 
 /// Heat, 0 to 1, linear.

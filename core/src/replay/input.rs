@@ -98,10 +98,10 @@ pub enum Motion<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct RecordedPose<'a>(pub(super) &'a [[u8; 52]]);
 
-impl RecordedPose<'_> {
+impl<'a> RecordedPose<'a> {
     /// `root_from_joint` of every joint, in the asset's order.
     #[must_use]
-    pub fn joints(&self) -> impl ExactSizeIterator<Item = Affine> + '_ {
+    pub fn joints(self) -> impl ExactSizeIterator<Item = Affine> + use<'a> {
         self.0.iter().map(|bytes| {
             let words = bytes.as_chunks::<4>().0;
             let at = |i: usize| words.get(i).map_or(0.0, |w| f32::from_le_bytes(*w));

@@ -105,7 +105,7 @@ impl<'a> Replay<'a> {
     }
 
     /// All steps.
-    pub fn frames(&self) -> impl Iterator<Item = Frame<'a>> {
+    pub fn frames(&self) -> impl Iterator<Item = Frame<'a>> + use<'a> {
         self.records().filter_map(|record| match record {
             Record::Frame(frame) => Some(frame),
             _ => None,

@@ -7,7 +7,7 @@ use super::outcome::{Outcome, Stage};
 use super::parse::{Record, Records, Replay, state_is_whole};
 use super::place::{Detail, first_difference};
 use crate::character::Character;
-use crate::math::digest;
+use crate::math::{canary, digest};
 use core::fmt;
 
 /// How far to go.
@@ -53,7 +53,7 @@ pub struct Difference {
 pub enum Cause {
     /// [`Field::Outcome`] or [`Field::Snapshot`] of the replay is damaged.
     Damaged(Field),
-    /// The float environments differ (see [`crate::math::canary`]).
+    /// The float environments differ (see [`canary::float_environment`]).
     Canary {
         /// Word in the replay.
         recorded: u32,
@@ -105,6 +105,23 @@ impl fmt::Display for Difference {
             write!(f, ", {detail}")?;
         }
         write!(f, "; {}", self.cause)
+    }
+}
+
+fn environment(recorded: u32, here: u32) -> Option<Cause> {
+    (recorded != here).then_some(Cause::Canary { recorded, here })
+}
+
+fn kernel(recorded: u64) -> Option<Cause> {
+    (recorded != u64::from(KERNEL_VERSION)).then_some(Cause::Kernel { recorded, here: KERNEL_VERSION })
+}
+
+impl Replay<'_> {
+    /// What makes a difference likely, known before a frame is run: another float environment or another kernel version.
+    #[must_use]
+    pub fn suspect(&self) -> Option<Cause> {
+        let recorded = u32::try_from(self.header(HeaderField::Canary)).unwrap_or(u32::MAX);
+        environment(recorded, canary::float_environment()).or(kernel(self.header(HeaderField::KernelVersion)))
     }
 }
 
@@ -237,13 +254,7 @@ impl<'r, 'c, 'a> Verifier<'r, 'c, 'a> {
         if !frame.intact {
             return Cause::Damaged(Field::Outcome);
         }
-        if recorded != here {
-            return Cause::Canary { recorded, here };
-        }
-        if self.kernel != u64::from(KERNEL_VERSION) {
-            return Cause::Kernel { recorded: self.kernel, here: KERNEL_VERSION };
-        }
-        Cause::Unknown
+        environment(recorded, here).or(kernel(self.kernel)).unwrap_or(Cause::Unknown)
     }
 
     fn detail(&self, frame: u64, saved: &[u8], whole: bool) -> Option<Detail> {
