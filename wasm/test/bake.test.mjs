@@ -43,7 +43,7 @@ test('files beside a .gltf are asked for', () => {
   const gltf = new TextEncoder().encode(JSON.stringify(json));
   const whole = bake(gltf, 'split.gltf', { resolve: { 'body parts.bin': binary } });
   assert.equal(new Asset(whole.asset).vertexCount, new Asset(builtin.asset).vertexCount);
-  assert.throws(() => bake(gltf, 'split.gltf'), /^split\.gltf: body parts\.bin: the file beside it is missing/);
+  assert.throws(() => bake(gltf, 'split.gltf'), { message: /^split\.gltf: body parts\.bin: the file beside it is missing/ });
   const failing = () => {
     throw new Error('no network');
   };

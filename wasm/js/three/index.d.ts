@@ -1,6 +1,6 @@
 import type { LineSegments, Object3D } from 'three';
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from 'three/examples/jsm/loaders/GLTFLoader.js';
-import type { Asset, Character, SomeTunables, Tunables, Verdict } from '../index.js';
+import type { Asset, Bytes, Character, SomeTunables, Tunables, Verdict } from '../index.js';
 
 /** What a frame cost. */
 export interface SinewStats {
@@ -37,7 +37,7 @@ export declare class SinewCharacter {
    * @param asset the asset of this very file, or its bytes.
    * @throws Error where asset and file do not belong together.
    */
-  constructor(gltf: Pick<GLTF, 'scene' | 'parser'>, asset: Asset | BufferSource);
+  constructor(gltf: Pick<GLTF, 'scene' | 'parser'>, asset: Asset | Bytes);
   readonly asset: Asset;
   /** What is below: everything that is not offered here. */
   readonly character: Character;
@@ -71,13 +71,13 @@ export declare class SinewCharacter {
   readonly recording: boolean;
   stopRecording(): Uint8Array;
   /** Runs a replay again, on a character of its own. */
-  verify(bytes: BufferSource): Verdict;
+  verify(bytes: Bytes): Verdict;
 
   /** Gives the meshes back as they were and frees the memory. Twice is harmless. */
   dispose(): void;
 }
 
-type AssetSource = Asset | BufferSource | Response | URL | string;
+type AssetSource = Asset | Bytes | Response | URL | string;
 
 export interface SinewLoaderOptions {
   /** The asset of the file that is loaded, where to get it, or a function that tells. */

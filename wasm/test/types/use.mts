@@ -28,7 +28,7 @@ character.tunables = { flavour: 1 };
 asset.hash = text;
 
 await baker.init();
-const { asset: bytes, notes } = baker.bake(new Uint8Array(), 'fox.glb', { resolve: (uri) => heat.buffer instanceof ArrayBuffer && uri ? heat.buffer : undefined });
+const { asset: bytes, notes } = baker.bake(new Uint8Array(), 'fox.glb', { resolve: (uri) => (uri === 'fox.bin' ? heat : undefined) });
 
 const scene = new Scene();
 const loader = new GLTFLoader();
