@@ -20,6 +20,9 @@ pub use rules::{Recipe, Rule};
 use crate::{Error, Model};
 use surface::Surface;
 
+/// Softness grows by at most this much per body size along the surface. With offsets of at most `½/SLOPE`
+/// body sizes a surface is compressed by no more than half: it cannot fold onto itself.
+const SLOPE: f64 = 5.0;
 /// Softness below this is smoothing's rim, not flesh.
 const RIM: f64 = 0.03;
 
@@ -52,6 +55,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     surface.join_small_parts(&mut softness);
     surface.smooth(&mut softness);
     stretch(&surface, &mut softness);
+    surface.limit_slope(&mut softness, SLOPE);
     let partners = mirror::partners(&surface);
     if let Some(partners) = &partners {
         mirror::average(&mut softness, partners);

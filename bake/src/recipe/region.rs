@@ -111,7 +111,7 @@ fn parameters(model: &Model, patch: &Patch, recipe: &Recipe) -> Region {
         frequency: narrow(steps),
         damping: 0.22,
         gain: 1.0,
-        max_offset: narrow(libm::round((0.45 * patch.reach).clamp(0.02, 0.12) * 200.0) / 200.0),
+        max_offset: narrow(libm::round((0.45 * patch.reach).clamp(0.02, 0.5 / super::SLOPE) * 200.0) / 200.0),
     };
     recipe.tune(&mut region);
     region

@@ -105,6 +105,28 @@ impl Surface {
         }
     }
 
+    /// Lowers softness to where it grows by at most `slope` per body size along edges.
+    pub(super) fn limit_slope(&self, softness: &mut [f64], slope: f64) {
+        let mut changed = true;
+        let mut rounds = 0;
+        while changed && rounds < 200 {
+            changed = false;
+            rounds += 1;
+            for k in 0..softness.len() {
+                // Forwards and backwards in turn, so that a wave crosses the body in few rounds.
+                let i = if rounds % 2 == 0 { softness.len() - 1 - k } else { k };
+                let reach = |j: &usize| {
+                    softness[*j] + slope * (self.points[i] - self.points[*j]).length() / self.size
+                };
+                let most = self.neighbours[i].iter().map(reach).fold(f64::INFINITY, f64::min);
+                if most < softness[i] - 1e-12 {
+                    softness[i] = most;
+                    changed = true;
+                }
+            }
+        }
+    }
+
     /// Diffuses softness over the surface and between parts that touch.
     pub(super) fn smooth(&self, softness: &mut [f64]) {
         let touching = self.touching();
