@@ -1,2 +1,91 @@
-//! Set-up and chores.
-fn main() {}
+//! Set-up and chores: `cargo xtask --help`.
+
+mod apt;
+mod browser;
+mod cache;
+mod clean;
+mod count;
+mod demo;
+mod npm;
+mod page;
+mod process;
+mod report;
+mod server;
+mod setup;
+mod sizes;
+mod test;
+mod toolchain;
+mod wasm;
+mod workspace;
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+/// Set-up and chores of the workspace.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Debug, Subcommand)]
+enum Chore {
+    /// Install what a fresh machine lacks, or say how; the other chores do it as they need it.
+    Setup,
+    /// Bake and play the built-in character, natively and in wasm, and show the page.
+    Demo {
+        /// Load the page once in headless Chromium instead of serving it.
+        #[arg(long)]
+        headless: bool,
+        /// Port of the page on 127.0.0.1; 0 takes a free one.
+        #[arg(long, default_value_t = 8080)]
+        port: u16,
+    },
+    /// Run every check and test.
+    Test {
+        /// Only checks with this in their name.
+        #[arg(long, default_value = "")]
+        filter: String,
+    },
+    /// Build the npm package into `wasm/pkg` and check its size.
+    Wasm,
+    /// Build the page and serve it.
+    Serve {
+        /// Port on 127.0.0.1; 0 takes a free one.
+        #[arg(long, default_value_t = 8080)]
+        port: u16,
+    },
+    /// Measure: `sinew bench`, optimized.
+    Bench {
+        /// Passed on to `sinew bench`.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
+    /// Remove what chores made.
+    Clean,
+}
+
+fn main() -> ExitCode {
+    match run(Arguments::parse().chore) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            report::note(format!("error: {error:#}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(chore: Chore) -> Result<()> {
+    match chore {
+        Chore::Setup => setup::run(),
+        Chore::Demo { headless, port } => demo::run(headless, port),
+        Chore::Test { filter } => test::run(&filter),
+        Chore::Wasm => wasm::run(),
+        Chore::Serve { port } => page::serve(port),
+        Chore::Bench { arguments } => demo::bench(&arguments),
+        Chore::Clean => clean::run(),
+    }
+}

@@ -1,0 +1,56 @@
+// The package as npm would publish it, used as others use it: by Node, and by Vite.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { build } from 'vite';
+
+const here = join(import.meta.dirname, '..');
+let project;
+
+before(() => {
+  project = mkdtempSync(join(tmpdir(), 'sinew-package-'));
+  const installed = join(project, 'node_modules/sinew-wasm');
+  mkdirSync(installed, { recursive: true });
+  const [{ filename }] = JSON.parse(
+    execFileSync('npm', ['pack', '--json', '--pack-destination', project], { cwd: here, encoding: 'utf8' }),
+  );
+  execFileSync('tar', ['-xzf', join(project, filename), '-C', installed, '--strip-components=1']);
+  writeFileSync(join(project, 'package.json'), '{ "type": "module" }');
+  writeFileSync(join(project, 'index.html'), '<script type="module" src="/main.js"></script>');
+  writeFileSync(
+    join(project, 'main.js'),
+    `import { init, version } from 'sinew-wasm';
+     await init();
+     const bake = await import('sinew-wasm/bake');
+     await bake.default(globalThis.process ? { module_or_path: bytes() } : undefined);
+     function bytes() {
+       const fs = process.getBuiltinModule('node:fs');
+       return fs.readFileSync(new URL(import.meta.resolve('sinew-wasm/bake_bg.wasm')));
+     }
+     console.log(version(), bake.version());`,
+  );
+});
+
+after(() => rmSync(project, { recursive: true, force: true }));
+
+test('Node imports the packed package', () => {
+  const printed = execFileSync('node', ['main.js'], { cwd: project, encoding: 'utf8' });
+  assert.match(printed, /^(\d+\.\d+\.\d+) \1\n$/);
+});
+
+test('Vite bundles the packed package with every module beside it', async () => {
+  await build({
+    root: project,
+    configFile: false,
+    logLevel: 'error',
+    build: { target: 'es2022', assetsInlineLimit: 0 },
+  });
+  const assets = readdirSync(join(project, 'dist/assets'));
+  for (const name of ['sinew_scalar_bg', 'sinew_simd_bg', 'bake_bg']) {
+    const copies = assets.filter((asset) => asset.startsWith(name) && asset.endsWith('.wasm'));
+    assert.equal(copies.length, 1, `${name} among ${assets}`);
+  }
+});
