@@ -29,7 +29,7 @@ export class Actor {
     this.twin = new Twin(this.model);
     this.mixer = new THREE.AnimationMixer(this.model);
     this.animations = gltf.animations;
-    this.clips = [...gltf.animations.map((clip, i) => clip.name || `Clip ${i + 1}`), 'Root shake'];
+    this.clips = [...gltf.animations.map((clip, i) => clip.name || `Clip ${i + 1}`), 'Root shake (built in)'];
     this.box = this.#measure();
     this.asset = new Asset(asset);
     this.character = new SinewCharacter(gltf, this.asset);

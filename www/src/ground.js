@@ -25,14 +25,17 @@ const FRAGMENT = /* glsl */ `
   void main() {
     float far = length(at - center) / unit;
     float fade = 1.0 - smoothstep(0.8, 5.2, far);
-    float line = 0.10 * grid(2.0 * at / unit) + 0.10 * grid(0.5 * at / unit);
-    vec4 color = vec4(vec3(0.86, 0.9, 1.0), (line + 0.035) * fade * fade);
+    float line = 0.07 * grid(2.0 * at / unit) + 0.08 * grid(0.5 * at / unit);
+    float light = (line + 0.03) * fade * fade;
     float dark = 0.0;
     for (int i = 0; i < 2; i++) {
       float d = length(at - spots[i].xy) / unit;
       dark = max(dark, spots[i].z * exp(-9.0 * d * d));
     }
-    gl_FragColor = mix(color, vec4(0.02, 0.02, 0.04, 0.55), dark);
+    // Darkness over light, both see-through.
+    dark *= 0.6;
+    float alpha = dark + light * (1.0 - dark);
+    gl_FragColor = vec4(vec3(0.86, 0.9, 1.0) * light * (1.0 - dark) / max(alpha, 1e-4), alpha);
   }`;
 
 export class Ground extends THREE.Group {

@@ -85,7 +85,7 @@ function checkExtensions(gltf, name) {
 function checkReferences(gltf, name) {
   const outside = [...(gltf.buffers ?? []), ...(gltf.images ?? [])].find(({ uri }) => uri && !/^(data|blob):/.test(uri));
   if (!outside) return;
-  throw new Problem(`${name} needs ${decodeURI(outside.uri)}, which lies beside it`, 'A page sees only the file that is dropped. Export it as one .glb, or as .gltf with embedded data.');
+  throw new Problem(`${name} needs ${outside.uri}, which lies beside it`, 'A page sees only the file that is dropped. Export it as one .glb, or as .gltf with embedded data.');
 }
 
 function checkSkin(gltf, name) {

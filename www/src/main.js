@@ -6,6 +6,7 @@ import { Feel } from './feel.js';
 import { Figures } from './figures.js';
 import { allowGrabbing } from './grab.js';
 import { checkSize } from './inspect.js';
+import { hooks } from './hooks.js';
 import { listen } from './keys.js';
 import { placeLabels } from './labels.js';
 import { builtin, fromFile } from './model.js';
@@ -20,7 +21,7 @@ const calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
 const LONGEST_STEP = 0.25; // s: what a clip advances at most after a pause of the browser's
 const point = new THREE.Vector3();
 
-class Page {
+export class Page {
   motion = new RootMotion();
   actor = null;
   speed = 1;
@@ -37,12 +38,12 @@ class Page {
     this.panel = new Panel({
       flesh: () => this.apply(),
       heat: () => this.apply(),
-      side: () => { this.apply(); this.frame(true); },
+      side: () => { this.apply(); this.frame(); },
       playing: (playing) => { this.playing = playing; },
       clip: (index) => this.actor?.play(index),
       speed: (speed) => { this.speed = speed; },
       shake: () => this.motion.shake(),
-      insets: (insets) => { this.stage.setInsets(insets); this.frame(true); },
+      insets: (insets) => { this.stage.setInsets(insets); this.frame({ keepView: true }); },
     });
     const choose = acceptFiles((file) => this.open(file));
     allowGrabbing(this.stage, this.motion, () => this.actor);
@@ -67,8 +68,8 @@ class Page {
   }
 
   /** The camera fits what is shown. */
-  frame(keepView, instant = false) {
-    if (this.actor) this.stage.fit(this.actor.frame(), { keepView, instant });
+  frame(how = {}) {
+    if (this.actor) this.stage.fit(this.actor.frame(), { abreast: this.actor.side, ...how });
   }
 
   /** Arrow keys, as seen from the camera. */
@@ -81,7 +82,7 @@ class Page {
 
   home() {
     this.motion.home();
-    this.frame(false);
+    this.frame();
   }
 
   /** Opens a file; on any problem the character that is there stays. */
@@ -111,7 +112,7 @@ class Page {
     this.stage.scene.add(actor.root, actor.twin.root);
     for (const part of [this.feel, this.figures, this.replay, this.panel]) part.attach(part === this.feel ? actor.character : actor);
     this.apply();
-    this.frame(false, true);
+    this.frame({ instant: true });
   }
 
   /** One frame of the browser's. */
@@ -147,7 +148,7 @@ async function main() {
   await init();
   page.show(await busy('Growing the character', builtin));
   page.stage.renderer.setAnimationLoop((now) => page.tick(now));
-  globalThis.sinew = { page, version: version(), simd, THREE };
+  globalThis.sinew = hooks(page, { version: version(), simd });
 }
 
 // What the tests wait for: `ready` or `failed`.

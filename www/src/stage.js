@@ -5,6 +5,7 @@ import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { Ground } from './ground.js';
 
 const FRONT = new THREE.Vector3(0.5, 0.24, 1).normalize();
+const ABREAST = new THREE.Vector3(0.12, 0.2, 1).normalize();
 const MAX_PIXEL_RATIO = 2;
 const point = new THREE.Vector3();
 const ndc = new THREE.Vector2();
@@ -43,7 +44,7 @@ export class Stage {
   #light() {
     const pmrem = new THREE.PMREMGenerator(this.renderer);
     this.scene.environment = pmrem.fromScene(new RoomEnvironment(), 0.04).texture;
-    this.scene.environmentIntensity = 0.32;
+    this.scene.environmentIntensity = 0.2;
     pmrem.dispose();
     const sun = (color, intensity, x, y, z) => {
       const light = new THREE.DirectionalLight(color, intensity);
@@ -51,14 +52,14 @@ export class Stage {
       this.#lights.add(light, light.target);
       return light;
     };
-    this.#key = sun(0xfff0de, 2.7, 1.5, 2.6, 1.9);
+    this.#key = sun(0xffead2, 2.9, 1.5, 2.6, 1.9);
     this.#key.castShadow = true;
     this.#key.shadow.mapSize.set(2048, 2048);
     this.#key.shadow.radius = 5;
     this.#key.shadow.bias = -0.0004;
     sun(0x9db8ff, 2.4, -2.2, 1.7, -2.6); // rim, cool
     sun(0xffc9a8, 0.9, 2.6, 0.9, -2.2); // rim, warm
-    this.#lights.add(new THREE.HemisphereLight(0xdfe6ff, 0x4a3a36, 0.85));
+    this.#lights.add(new THREE.HemisphereLight(0xcdd8ff, 0x3d2f2c, 0.55));
   }
 
   /** Parts of the window covered by panels, CSS pixels; the camera centers on what is left. */
@@ -79,9 +80,10 @@ export class Stage {
   /**
    * Fits light, ground and camera to `box` on the ground at `box.min.y`.
    * @param {THREE.Box3} box world space
-   * @param {{ keepView?: boolean, instant?: boolean }} [how] keepView: from the side the camera is at now
+   * @param {{ keepView?: boolean, abreast?: boolean, instant?: boolean }} [how] keepView: from the side the camera
+   *   is at now; abreast: so that two bodies look equally near
    */
-  fit(box, { keepView = false, instant = false } = {}) {
+  fit(box, { keepView = false, abreast = false, instant = false } = {}) {
     const size = box.getSize(new THREE.Vector3());
     const center = box.getCenter(new THREE.Vector3());
     this.unit = size.length() / 2 || 1;
@@ -96,7 +98,7 @@ export class Stage {
     this.#key.position.set(1.5, 2.6, 1.9).multiplyScalar(1.6 * this.unit);
     Object.assign(this.camera, { near: this.unit / 60, far });
     Object.assign(this.controls, { minDistance: 0.6 * this.unit, maxDistance: 14 * this.unit });
-    const side = keepView ? point.copy(this.camera.position).sub(this.controls.target).normalize().clone() : FRONT.clone();
+    const side = keepView ? point.copy(this.camera.position).sub(this.controls.target).normalize().clone() : (abreast ? ABREAST : FRONT).clone();
     const target = center.clone();
     const position = side.clone().multiplyScalar(this.#distance(size, side)).add(target);
     this.#goal = { position, target };
