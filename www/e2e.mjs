@@ -28,11 +28,11 @@ after(async () => {
 });
 
 /** A page that is ready, and the errors it has reported so far. */
-async function open(options, errors = []) {
+async function open(options, errors = [], query = '') {
   const page = await browser.newPage(options);
   page.setDefaultTimeout(120_000);
   watch(page, errors);
-  await page.goto(url);
+  await page.goto(url + query);
   await page.waitForFunction(() => document.documentElement.dataset.state);
   assert.equal(await page.evaluate(() => document.documentElement.dataset.state), 'ready', errors.join('\n'));
   return page;
@@ -218,7 +218,7 @@ describe('the page', () => {
 describe('pictures', () => {
   test('of a wide window', async () => {
     const errors = [];
-    const page = await open({ viewport: WIDE }, errors);
+    const page = await open({ viewport: WIDE }, errors, '?full');
     await frames(page, 4);
     await screenshot(page, 'wide.png');
     await page.keyboard.press('s');
@@ -237,7 +237,7 @@ describe('pictures', () => {
 
   test('of a phone, where nothing overflows', async () => {
     const errors = [];
-    const page = await open(PHONE, errors);
+    const page = await open(PHONE, errors, '?full');
     await frames(page, 4);
     await screenshot(page, 'phone.png');
     await page.tap('#grip');

@@ -14,6 +14,7 @@ import { RootMotion } from './motion.js';
 import { busy, hideMessage, showProblem } from './notice.js';
 import { Panel } from './panel.js';
 import { Problem, asProblem } from './problem.js';
+import { Quality } from './quality.js';
 import { Replay } from './replay.js';
 import { Stage } from './stage.js';
 
@@ -32,6 +33,7 @@ export class Page {
 
   constructor(canvas) {
     this.stage = new Stage(canvas, { calm });
+    this.quality = new Quality(this.stage, new URLSearchParams(location.search).has('full'));
     this.figures = new Figures({ simd });
     this.feel = new Feel();
     this.replay = new Replay();
@@ -64,7 +66,7 @@ export class Page {
     this.actor.side = side.on;
     this.actor.character.enabled = flesh.on;
     this.actor.character.heatMap = heat.on;
-    document.querySelector('#legend').hidden = !heat.on;
+    document.body.classList.toggle('heat', heat.on);
   }
 
   /** The camera fits what is shown. */
@@ -133,6 +135,7 @@ export class Page {
       this.frames += 1;
     }
     stage.render(real);
+    this.quality.add(elapsed);
     if (actor) placeLabels(stage, actor);
   }
 }

@@ -6,7 +6,6 @@ import { Ground } from './ground.js';
 
 const FRONT = new THREE.Vector3(0.5, 0.24, 1).normalize();
 const ABREAST = new THREE.Vector3(0.12, 0.2, 1).normalize();
-const MAX_PIXEL_RATIO = 2;
 const point = new THREE.Vector3();
 const ndc = new THREE.Vector2();
 
@@ -19,6 +18,7 @@ export class Stage {
   #insets = { top: 0, right: 0, bottom: 0, left: 0 };
   #followed = new THREE.Vector3();
   #goal = null;
+  #maxRatio = 2;
   #raycaster = new THREE.Raycaster();
   /** Size of what stands here: half the diagonal of its box, world units. */
   unit = 1;
@@ -68,9 +68,24 @@ export class Stage {
     this.resize();
   }
 
+  /** Draws at most so many pixels to a CSS pixel. */
+  limit(ratio) {
+    this.#maxRatio = ratio;
+    this.resize();
+  }
+
+  /** Light for machines without a graphics card: no reflections, coarser shadow. */
+  plain() {
+    this.scene.environment = null;
+    const { shadow } = this.#key;
+    shadow.mapSize.set(1024, 1024);
+    shadow.map?.dispose();
+    shadow.map = null;
+  }
+
   resize() {
     const [width, height] = [innerWidth, innerHeight];
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, MAX_PIXEL_RATIO));
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, this.#maxRatio));
     this.renderer.setSize(width, height, false);
     const { top, right, bottom, left } = this.#insets;
     this.camera.aspect = width / height;
