@@ -18,6 +18,7 @@ pub mod recipe;
 pub mod render;
 #[cfg(feature = "render")]
 pub mod report;
+pub mod tunables;
 
 pub use error::Error;
 pub use model::Model;

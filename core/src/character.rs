@@ -2,11 +2,12 @@
 
 use crate::asset::Asset;
 use crate::asset::layout::MAX_REGIONS;
+use crate::kernel::clip::Channels;
 use crate::kernel::skin::{self, Columns};
 use crate::kernel::spring::{Spring, Step};
 use crate::kernel::unskin::{self, Limit};
+use crate::life::{Life, Phase};
 use crate::math::affine::{self, Affine};
-use crate::math::digest::Digest;
 use crate::math::{float, noise, quat, vec3};
 use crate::stage::embed::Surface;
 use crate::stage::pose::{Root, Skeleton};
@@ -20,31 +21,6 @@ use crate::workspace::{LengthError, Workspace};
 const REST: f32 = 1e-7;
 /// Time shorter than this, s, waits for the next step.
 const SHORTEST_STEP: f32 = 1e-5;
-
-/// Where the character is in its life.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Phase {
-    /// The next step settles at its pose.
-    Settle,
-    /// Settled one step ago: the next step starts with the target's slope.
-    Fresh,
-    /// Running.
-    Running,
-}
-
-/// Everything of a character that is not an array, and that a saved state holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Life {
-    pub(crate) phase: Phase,
-    pub(crate) frozen: bool,
-    pub(crate) teleport: bool,
-    pub(crate) divisor: u32,
-    pub(crate) turn: u32,
-    pub(crate) pending: f32,
-    pub(crate) gust_ticks: u64,
-    pub(crate) root: Root,
-    pub(crate) tunables: Tunables,
-}
 
 /// A character in the caller's memory.
 ///
@@ -197,14 +173,28 @@ impl<'a> Character<'a> {
         if !t.is_finite() {
             return Err(StepError::TimeNotFinite);
         }
-        let Some(dt) = self.elapse(dt) else { return Ok(Stepped::Held) };
+        Ok(self.sample_and_advance(channels, t, root, dt))
+    }
+
+    fn sample_and_advance(&mut self, channels: Channels<'_>, t: f32, root: Root, dt: f32) -> Stepped {
+        let Some(dt) = self.elapse(dt) else { return Stepped::Held };
         let asset = &self.asset;
         let skeleton =
             Skeleton { parents: asset.parents, rest: asset.node_rest, joint_node: asset.joint_node };
         let m = &mut self.memory;
         pose::sample(skeleton, channels, t, m.joints, (m.local, m.model));
         pose::palette(m.joints, asset.joint_from_bind, m.palette);
-        Ok(self.advance(root, dt))
+        self.advance(root, dt)
+    }
+
+    /// Advances by `dt` seconds in the rest pose of the asset's skeleton.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::step`].
+    pub fn step_rest(&mut self, root: Root, dt: f32) -> Result<Stepped, StepError> {
+        self.check(&root, dt)?;
+        Ok(self.sample_and_advance(Channels::default(), 0.0, root, dt))
     }
 
     fn check(&self, root: &Root, dt: f32) -> Result<(), StepError> {
@@ -293,58 +283,6 @@ impl<'a> Character<'a> {
         m.state.advance(m.targets, m.f, regions, &self.steps);
     }
 
-    /// Forgets all motion: the next step starts at rest in its pose.
-    pub fn reset(&mut self) {
-        self.settle();
-        self.life.gust_ticks = 0;
-        self.life.pending = 0.0;
-        self.memory.offsets.fill([0.0; 3]);
-        embed::rest(surface(&self.asset), self.memory.positions, self.memory.normals);
-    }
-
-    /// Lets the next step put the flesh where it would come to rest in its pose.
-    pub fn settle(&mut self) {
-        self.life.phase = Phase::Settle;
-    }
-
-    /// Declares that the next step of the root is a teleport, whatever its length: it is not felt.
-    pub fn teleport(&mut self) {
-        self.life.teleport = true;
-    }
-
-    /// Plays `clip` in a loop for `loops` rounds in steps of `dt` seconds, so that the first frame shown does not pop.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::step_clip`].
-    pub fn warm_up(&mut self, clip: u32, loops: u32, root: Root, dt: f32) -> Result<(), StepError> {
-        let duration = self.asset.clip(clip as usize).ok_or(StepError::NoSuchClip(clip))?.duration;
-        if !(dt > 0.0 && dt.is_finite()) {
-            return Err(StepError::TimeNotFinite);
-        }
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturating")]
-        let frames = float::min(duration / dt, 100_000.0) as u32;
-        self.settle();
-        for _ in 0..loops.min(1_000) {
-            for frame in 0..frames {
-                #[allow(clippy::cast_precision_loss, reason = "at most 100,000")]
-                self.step_clip(clip, frame as f32 * dt, root, dt)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Advances only every `divisor`-th step (0 counts as 1), by all the time since the last.
-    pub fn set_rate_divisor(&mut self, divisor: u32) {
-        self.life.divisor = divisor.max(1);
-        self.life.turn = 0;
-    }
-
-    /// Stops the flesh where it is (`true`), or lets it catch up at the next step (`false`).
-    pub fn freeze(&mut self, frozen: bool) {
-        self.life.frozen = frozen;
-    }
-
     /// Positions of the render vertices, bind space: rest plus offsets. Skinning them shows the flesh.
     #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
@@ -394,19 +332,7 @@ impl<'a> Character<'a> {
     /// Digests of what each stage made.
     #[must_use]
     pub fn digests(&self) -> Digests {
-        let m = &self.memory;
-        let of = |arrays: &[&[f32]]| {
-            let mut digest = Digest::default();
-            arrays.iter().for_each(|a| digest.floats(a));
-            digest.finish()
-        };
-        let state = m.state.arrays().map(<[_]>::as_flattened);
-        Digests {
-            pose: of(&[m.palette.as_flattened().as_flattened()]),
-            skin: of(&[m.targets.as_flattened(), m.f.as_flattened()]),
-            dynamics: of(&state),
-            embed: of(&[m.offsets.as_flattened(), m.positions.as_flattened(), m.normals.as_flattened()]),
-        }
+        Digests::of(&self.memory)
     }
 }
 

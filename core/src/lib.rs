@@ -23,6 +23,9 @@
 #![no_std]
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare bits"))]
 
+#[cfg(feature = "std")]
+extern crate std;
+
 #[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
 compile_error!("x87 rounds twice: sinew needs SSE2");
 
@@ -30,7 +33,9 @@ pub mod asset;
 mod character;
 pub mod kernel;
 mod lanes;
+mod life;
 pub mod math;
+pub mod replay;
 pub mod stage;
 mod state;
 mod step;

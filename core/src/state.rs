@@ -6,7 +6,8 @@
 //!
 //! Little-endian; the digest covers every byte before it.
 
-use crate::character::{Character, Life, Phase, surface};
+use crate::character::{Character, surface};
+use crate::life::{Life, Phase};
 use crate::math::digest;
 use crate::stage::embed;
 use crate::stage::pose::Root;
@@ -16,7 +17,7 @@ use core::fmt;
 const MAGIC: [u8; 4] = *b"SNST";
 const VERSION: u16 = 1;
 /// Bytes before the arrays: header, flags, divisor, turn, pending, ticks, root, tunables.
-const HEAD: usize = 16 + 4 * 4 + 8 + 24 + 16 + 4 * Tunables::WORDS;
+pub(crate) const HEAD: usize = 16 + 4 * 4 + 8 + 24 + 16 + 4 * Tunables::WORDS;
 
 /// Why bytes are not a state of this character; nothing changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,10 +59,6 @@ impl Writer<'_> {
         let (head, rest) = core::mem::take(&mut self.0).split_at_mut(bytes.len());
         head.copy_from_slice(bytes);
         self.0 = rest;
-    }
-
-    fn floats(&mut self, x: &[f32]) {
-        x.iter().for_each(|x| self.put(&x.to_le_bytes()));
     }
 }
 
@@ -118,33 +115,41 @@ impl Character<'_> {
     pub fn save_state(&self, out: &mut [u8]) -> Result<(), StateError> {
         self.check_length(out.len())?;
         let content = out.len() - 8;
-        let life = &self.life;
         let mut w = Writer(&mut out[..content]);
-        w.put(&MAGIC);
-        w.put(&VERSION.to_le_bytes());
-        w.put(&[0; 2]);
-        w.put(&self.asset.hash.to_le_bytes());
+        self.write_state(&mut |bytes| w.put(bytes));
+        let hash = digest::of_bytes(&out[..content]);
+        out[content..].copy_from_slice(&hash.to_le_bytes());
+        Ok(())
+    }
+
+    /// Hands the bytes of a saved state but the closing digest to `put`, piece by piece; no field of
+    /// the head is split, nor a float of the arrays.
+    pub(crate) fn write_state(&self, put: &mut impl FnMut(&[u8])) {
+        let life = &self.life;
+        put(&MAGIC);
+        put(&VERSION.to_le_bytes());
+        put(&[0; 2]);
+        put(&self.asset.hash.to_le_bytes());
         let phase = match life.phase {
             Phase::Settle => 0_u32,
             Phase::Fresh => 1,
             Phase::Running => 2,
         };
         let flags = phase | (u32::from(life.frozen) << 2) | (u32::from(life.teleport) << 3);
-        for word in [flags, life.divisor, life.turn] {
-            w.put(&word.to_le_bytes());
+        for word in [flags, life.divisor, life.turn, life.pending.to_bits()] {
+            put(&word.to_le_bytes());
         }
-        w.floats(&[life.pending]);
-        w.put(&life.gust_ticks.to_le_bytes());
-        life.root.translation.iter().for_each(|x| w.put(&x.to_le_bytes()));
-        w.floats(&life.root.rotation);
-        w.floats(&life.tunables.to_words());
-        for array in self.memory.state.arrays() {
-            w.floats(array.as_flattened());
-        }
-        w.floats(self.memory.offsets.as_flattened());
-        let hash = digest::of_bytes(&out[..content]);
-        out[content..].copy_from_slice(&hash.to_le_bytes());
-        Ok(())
+        put(&life.gust_ticks.to_le_bytes());
+        life.root.translation.iter().for_each(|x| put(&x.to_le_bytes()));
+        life.root.rotation.iter().for_each(|x| put(&x.to_le_bytes()));
+        life.tunables.to_words().iter().for_each(|x| put(&x.to_le_bytes()));
+        let mut floats = |x: &[f32]| {
+            let (blocks, tail) = x.as_chunks::<8>();
+            blocks.iter().for_each(|b| put(b.map(f32::to_le_bytes).as_flattened()));
+            tail.iter().for_each(|x| put(&x.to_le_bytes()));
+        };
+        self.memory.state.arrays().iter().for_each(|a| floats(a.as_flattened()));
+        floats(self.memory.offsets.as_flattened());
     }
 
     /// Restores a state; the buffers show it, and the next step goes on from it bit for bit.

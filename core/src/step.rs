@@ -1,8 +1,10 @@
 //! What goes into a step and what comes out of it.
 
 use crate::math::affine::Affine;
+use crate::math::digest::Digest;
+use crate::stage::dynamics::springs::State;
 use crate::stage::pose::Root;
-use crate::workspace::LengthError;
+use crate::workspace::{LengthError, Workspace};
 use core::fmt;
 
 /// What moves the character in a step.
@@ -66,4 +68,31 @@ pub struct Digests {
     pub dynamics: u64,
     /// Offsets, positions and normals.
     pub embed: u64,
+}
+
+impl Digests {
+    /// Digests of the arrays of a character.
+    pub(crate) fn of(m: &Workspace<'_>) -> Self {
+        Self {
+            pose: digest_of(&[m.palette.as_flattened().as_flattened()]),
+            skin: digest_of(&[m.targets.as_flattened(), m.f.as_flattened()]),
+            dynamics: Self::of_dynamics(&m.state).dynamics,
+            embed: digest_of(&[
+                m.offsets.as_flattened(),
+                m.positions.as_flattened(),
+                m.normals.as_flattened(),
+            ]),
+        }
+    }
+
+    /// That of the dynamics alone; the others are 0.
+    pub(crate) fn of_dynamics(state: &State<'_>) -> Self {
+        Self { dynamics: digest_of(&state.arrays().map(<[_]>::as_flattened)), ..Self::default() }
+    }
+}
+
+fn digest_of(arrays: &[&[f32]]) -> u64 {
+    let mut digest = Digest::default();
+    arrays.iter().for_each(|a| digest.floats(a));
+    digest.finish()
 }

@@ -1,1 +1,7 @@
-//! To be written.
+//! What the tests of sinew share: small characters, handmade bytes, oracles, comparisons.
+
+pub mod asset_bytes;
+pub mod oracle;
+pub mod run;
+pub mod session;
+pub mod tube;

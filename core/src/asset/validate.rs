@@ -13,8 +13,9 @@ fn each<T>(section: Section, entries: &[T], valid: impl Fn(usize, &T) -> bool) -
     }
 }
 
-fn finite(x: &[f32]) -> bool {
-    x.iter().all(|x| x.is_finite())
+/// Whether coordinates can be multiplied and squared without overflow.
+fn usable(x: &[f32]) -> bool {
+    x.iter().all(|x| (-1e9..=1e9).contains(x))
 }
 
 fn unit(n: &[f32]) -> bool {
@@ -42,7 +43,7 @@ fn meta(asset: &Asset<'_>) -> Check {
         && m.vertices < 1 << 28
         && m.values < 1 << 28
         && m.nodes < 1 << 24;
-    let constants = finite(&m.bind_down)
+    let constants = usable(&m.bind_down)
         && m.body_size.is_finite()
         && m.body_size > 1e-12
         && m.body_size < 1e12
@@ -54,7 +55,7 @@ fn meta(asset: &Asset<'_>) -> Check {
 
 fn points(asset: &Asset<'_>) -> Check {
     let joints = asset.meta.joints;
-    each(Section::Rest, asset.rest, |_, p| finite(p))?;
+    each(Section::Rest, asset.rest, |_, p| usable(p))?;
     each(Section::InfluenceJoints, asset.influences.joints, |_, j| u32::from(*j) < joints)?;
     let stride = asset.influences.stride.max(1);
     let row = |row: &[f32]| {
@@ -95,7 +96,7 @@ fn surface(asset: &Asset<'_>) -> Check {
     each(Section::Moved, asset.moved, |_, v| active(v))?;
     each(Section::Lit, asset.stencils.vertices, |_, v| *v < m.vertices)?;
     each(Section::StencilPoints, asset.stencils.points, |_, p| p.iter().all(|p| *p < m.points))?;
-    each(Section::StencilTangents, asset.stencils.tangents, |_, g| finite(g.as_flattened()))?;
+    each(Section::StencilTangents, asset.stencils.tangents, |_, g| usable(g.as_flattened()))?;
     each(Section::Primitives, asset.primitives, |_, [_, _, _, first, count, zero]| {
         first.checked_add(*count).is_some_and(|end| end <= m.vertices) && *zero == 0
     })
@@ -103,12 +104,12 @@ fn surface(asset: &Asset<'_>) -> Check {
 
 fn skeleton(asset: &Asset<'_>) -> Check {
     let nodes = asset.meta.nodes;
-    each(Section::JointFromBind, asset.joint_from_bind, |_, m| finite(m.as_flattened()))?;
+    each(Section::JointFromBind, asset.joint_from_bind, |_, m| usable(m.as_flattened()))?;
     each(Section::JointNode, asset.joint_node, |_, n| *n < nodes)?;
     each(Section::Parents, asset.parents, |i, p| *p == NO_PARENT || (*p as usize) < i)?;
     each(Section::NodeRest, asset.node_rest, |_, trs| {
         let [_, _, _, x, y, z, w, ..] = *trs;
-        finite(trs) && unit(&[x, y, z, w])
+        usable(trs) && unit(&[x, y, z, w])
     })
 }
 
@@ -119,7 +120,7 @@ fn clips(asset: &Asset<'_>) -> Check {
         asset.clip(i).is_some() && duration.is_finite() && duration >= 0.0 && *zero == 0
     })?;
     each(Section::ClipNames, asset.clip_names, |_, n| text_is_padded(n))?;
-    each(Section::Values, channels.values, |_, v| v.is_finite())?;
+    each(Section::Values, channels.values, |_, v| usable(&[*v]))?;
     each(Section::Times, channels.times, |_, t| t.is_finite())?;
     each(Section::Channels, channels.rows, |_, row| {
         channels.channel(row).is_some_and(|(node, _, keys)| {

@@ -18,6 +18,7 @@
 
 use super::target::Target;
 use crate::lanes::{F32x4, Lanes};
+use crate::math::float::{max, min, sqrt};
 use crate::math::psi::psi;
 
 /// Parameters of a spring, per unit mass.
@@ -51,8 +52,9 @@ impl Response {
     /// The response of `spring` over `h` seconds, `h ≥ 0` and finite.
     #[must_use]
     pub fn new(spring: Spring, h: f32) -> Self {
-        let b = spring.ks * h * h;
-        let [p0, p1, p2, p3, _] = psi(spring.kd * h, b);
+        // Far beyond any domain the arguments are cut, so that their squares stay finite.
+        let (a, b) = (min(spring.kd * h, 1e12), min(spring.ks * h * h, 1e18));
+        let [p0, p1, p2, p3, _] = psi(a, b);
         Self {
             y: [1.0 - b * p2, h * p1, h * h * (p2 - p3), h * h * p3],
             u: [-spring.ks * h * p1, p0, h * (p1 - p2), h * p2],
@@ -124,7 +126,7 @@ impl Step {
             dt: [dt, inverse],
             y: [y[0], y[1], bend(y), y[2], y[3]],
             u: [u[0], u[1], bend(u), u[2], u[3]],
-            rest: [rest, rest * crate::math::float::max(crate::math::float::sqrt(spring.ks), 1.0)],
+            rest: [rest, rest * max(sqrt(spring.ks), 1.0)],
         }
     }
 }

@@ -136,4 +136,25 @@ mod tests {
         let got = of_bytes(b"sinew digest version 1, do not change silently");
         assert_eq!(got, 0x927d_1984_b2a5_0c80, "{got:#018x}");
     }
+
+    /// Goal: 5 GB/s, so that a character's state and outputs cost microseconds a frame.
+    #[test]
+    #[ignore = "a measurement: run it alone, with --release --nocapture"]
+    fn speed() {
+        extern crate std;
+        use std::time::Instant;
+        let floats: std::vec::Vec<f32> = (0..=u16::MAX).map(|i| f32::from(i) * 0.001 - 30.0).collect();
+        for len in [3_000, 65_536] {
+            let mut best = f64::INFINITY;
+            for _ in 0..20 {
+                let start = Instant::now();
+                for _ in 0..100 {
+                    core::hint::black_box(of(core::hint::black_box(&floats[..len])));
+                }
+                best = best.min(start.elapsed().as_secs_f64() / 100.0);
+            }
+            let bytes = f64::from(u32::try_from(4 * len).unwrap());
+            std::println!("{len} floats: {:.2} us, {:.2} GB/s", best * 1e6, bytes / best * 1e-9);
+        }
+    }
 }
