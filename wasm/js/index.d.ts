@@ -196,8 +196,36 @@ export declare class Character {
 
   readonly digests: Digests;
 
+  /** Begins a recording, with a snapshot of the state after every `snapshotEvery`-th step (60). It grows in memory. */
+  record(snapshotEvery?: number): void;
+  readonly recording: boolean;
+  /** Ends the recording: the bytes of a replay. */
+  stopRecording(): Uint8Array;
+
   /** Frees the memory. Twice is harmless; every other method throws afterwards. */
   dispose(): void;
   /** The same as {@link dispose}. */
   free(): void;
 }
+
+/** What verifying a replay found. */
+export interface Verdict {
+  /** Whether every frame came out the same, to the bit. */
+  same: boolean;
+  frames: number;
+  /** Digest of the whole run, 16 hexadecimal digits. */
+  digest: string;
+  /** In words. */
+  message: string;
+  /** The first frame that differs. */
+  frame?: number;
+  /** The earliest stage that differs there; `undefined` where it is the replay that is damaged. */
+  stage?: string | undefined;
+}
+
+/**
+ * Runs a replay again on a new character of `asset`, to the first difference.
+ *
+ * @throws Error for bytes that are no replay of this asset, or whose inputs are damaged.
+ */
+export declare function verify(asset: Asset, replay: BufferSource): Verdict;
