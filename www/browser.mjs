@@ -17,21 +17,19 @@ const CANDIDATES = [
 const IGNORED = [/GPU stall due to ReadPixels/, /GL Driver Message/, /software WebGL/i];
 
 const ARTIFACTS = new URL('artifacts/', import.meta.url);
+const READY_MS = 120_000; // a busy machine without a graphics card takes its time
 
 /** Keeps a picture of the page under `artifacts/`. */
 export async function screenshot(page, name) {
   await mkdir(ARTIFACTS, { recursive: true });
-  await page.screenshot({ path: fileURLToPath(new URL(name, ARTIFACTS)) });
+  await page.screenshot({ path: fileURLToPath(new URL(name, ARTIFACTS)), timeout: READY_MS });
 }
 
-/**
- * Opens `url`, waits until the page says it is ready, and hands it to `use(page)`.
- * Throws if the page failed, or if anything was reported as an error, however late.
- */
-export async function withPage(url, use, viewport = { width: 1280, height: 800 }) {
+/** Headless Chromium without a word to anyone but the page. */
+export async function launch() {
   const executablePath = CANDIDATES.find((path) => path && existsSync(path));
   if (!executablePath) throw new Error('no Chromium: set CHROMIUM to the path of one');
-  const browser = await chromium.launch({
+  return chromium.launch({
     executablePath,
     args: [
       '--no-sandbox', // as root there is none
@@ -39,23 +37,39 @@ export async function withPage(url, use, viewport = { width: 1280, height: 800 }
       '--disable-component-update',
       '--disable-sync',
       '--no-first-run',
+      '--use-angle=swiftshader', // the same picture on every machine
+      '--enable-unsafe-swiftshader',
     ],
   });
+}
+
+/** Collects what goes wrong in a page, however late. */
+export function watch(page, errors) {
+  page.on('pageerror', (error) => errors.push(`uncaught: ${error.stack ?? error}`));
+  page.on('console', (message) => {
+    const text = message.text();
+    if (message.type() === 'error' && !IGNORED.some((known) => known.test(text))) errors.push(`console: ${text}`);
+  });
+  page.on('requestfailed', (request) => errors.push(`not loaded: ${request.url()}`));
+  page.on('response', (response) => {
+    if (response.status() >= 400) errors.push(`${response.status()}: ${response.url()}`);
+  });
+}
+
+/**
+ * Opens `url`, waits until the page says it is ready, and hands it to `use(page)`.
+ * Throws if the page failed, or if anything was reported as an error, however late.
+ */
+export async function withPage(url, use, options = { viewport: { width: 1280, height: 800 } }) {
+  const browser = await launch();
   const errors = [];
   try {
-    const page = await browser.newPage({ viewport });
-    page.on('pageerror', (error) => errors.push(`uncaught: ${error.stack ?? error}`));
-    page.on('console', (message) => {
-      const text = message.text();
-      if (message.type() === 'error' && !IGNORED.some((known) => known.test(text))) errors.push(`console: ${text}`);
-    });
-    page.on('requestfailed', (request) => errors.push(`not loaded: ${request.url()}`));
-    page.on('response', (response) => {
-      if (response.status() >= 400) errors.push(`${response.status()}: ${response.url()}`);
-    });
+    const page = await browser.newPage(options);
+    page.setDefaultTimeout(READY_MS);
+    watch(page, errors);
     await page.goto(url);
     try {
-      await page.waitForFunction(() => document.documentElement.dataset.state, null, { timeout: 60_000 });
+      await page.waitForFunction(() => document.documentElement.dataset.state);
     } catch (error) {
       errors.push(`never ready: ${error.message}`);
     }
