@@ -28,7 +28,9 @@ export const hooks = (page, { version, simd }) => ({
   positions(twin = false) {
     const out = [];
     (twin ? page.actor.twin.root : page.actor.model).traverse((node) => {
-      if (node.isSkinnedMesh) out.push(...node.geometry.attributes.position.array);
+      if (!node.isSkinnedMesh) return;
+      const { position } = node.geometry.attributes; // may be interleaved with others
+      for (let i = 0; i < position.count; i++) out.push(position.getX(i), position.getY(i), position.getZ(i));
     });
     return out;
   },

@@ -36,7 +36,7 @@ export class Page {
     this.quality = new Quality(this.stage, new URLSearchParams(location.search).has('full'));
     this.figures = new Figures({ simd });
     this.feel = new Feel();
-    this.replay = new Replay();
+    this.replay = new Replay(() => this.panel.flesh.set(true)); // without flesh there are no steps
     this.panel = new Panel({
       flesh: () => this.apply(),
       heat: () => this.apply(),
@@ -127,7 +127,7 @@ export class Page {
     if (actor && delta > 0) {
       this.motion.update(delta);
       actor.update(this.playing ? delta : 0, delta, this.motion.offset);
-      this.replay.frame();
+      if (actor.character.enabled) this.replay.frame();
       this.figures.add(actor.character.enabled ? actor.character.stats.microseconds : null, elapsed);
       this.figures.show(now);
       stage.follow(actor.center(point));
