@@ -1,4 +1,4 @@
-import type { InitInput } from './index.js';
+import type { Bytes, InitInput } from './index.js';
 
 /** Loads the baker, once: a module of its own, for pages into which models are dropped. */
 export declare function init(source?: InitInput | Promise<InitInput>): Promise<void>;
@@ -15,9 +15,9 @@ export interface Baked {
 
 /** Bytes of the files beside a `.gltf`, by relative path, percent-decoded; `undefined` where there is none. */
 export type Resolve =
-  | ((uri: string) => Uint8Array | ArrayBuffer | null | undefined)
-  | Map<string, Uint8Array | ArrayBuffer>
-  | Record<string, Uint8Array | ArrayBuffer>;
+  | ((uri: string) => Bytes | null | undefined)
+  | Map<string, Bytes>
+  | Record<string, Bytes>;
 
 /**
  * Bakes the bytes of a `.glb`, `.gltf` or `.vrm`: where flesh is and how soft, from geometry and weights alone.
@@ -27,7 +27,7 @@ export type Resolve =
  * @throws Error with one line that names the file, the place, the problem and the remedy.
  */
 export declare function bake(
-  bytes: BufferSource,
+  bytes: Bytes,
   name: string,
   options?: { resolve?: Resolve; recipe?: string },
 ): Baked;

@@ -4,6 +4,12 @@ import { memory } from './load.js';
 import { bytesOf } from './readable.js';
 import { named, toTunables, writeTunables } from './tunables.js';
 
+/** Whether a step advanced. It is told as a number: see `RawCharacter::step`. */
+function told(raw, code) {
+  if (code === 2) raw.refusal();
+  return code === 1;
+}
+
 export class Character {
   #raw;
   #asset;
@@ -63,14 +69,14 @@ export class Character {
   step(dt) {
     const raw = this.#live();
     const { translation: t, rotation: r } = this.#root;
-    return raw.step(t[0], t[1], t[2], r[0], r[1], r[2], r[3], dt);
+    return told(raw, raw.step(t[0], t[1], t[2], r[0], r[1], r[2], r[3], dt));
   }
 
   stepClip(clip, time, dt) {
     const raw = this.#live();
     const { translation: t, rotation: r } = this.#root;
     const index = clipIndex(this.#asset.clips, clip);
-    return raw.step_clip(index, time, t[0], t[1], t[2], r[0], r[1], r[2], r[3], dt);
+    return told(raw, raw.step_clip(index, time, t[0], t[1], t[2], r[0], r[1], r[2], r[3], dt));
   }
 
   warmUp(clip, loops, dt) {

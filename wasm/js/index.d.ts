@@ -1,5 +1,8 @@
+/** Bytes. */
+export type Bytes = ArrayBufferView | ArrayBufferLike;
+
 /** What {@link init} can load the runtime from. */
-export type InitInput = URL | string | Request | Response | BufferSource | WebAssembly.Module;
+export type InitInput = URL | string | Request | Response | Bytes | WebAssembly.Module;
 
 /** True where the SIMD build runs. Both builds give the same bits; only the speed differs. */
 export declare const simd: boolean;
@@ -13,7 +16,7 @@ export declare const simd: boolean;
 export declare function init(source?: InitInput | Promise<InitInput>): Promise<void>;
 
 /** As {@link init}, from bytes or a compiled module, at once: for workers and tests. */
-export declare function initSync(source: BufferSource | WebAssembly.Module): void;
+export declare function initSync(source: Bytes | WebAssembly.Module): void;
 
 /**
  * Zero where floats behave as IEEE 754 begins; otherwise one bit a surprise (flushed subnormals, another
@@ -46,7 +49,7 @@ export interface Primitive {
 /** A baked character. Its bytes are copied into the module's memory, once, and checked. */
 export declare class Asset {
   /** @throws Error that says what is wrong with the bytes. */
-  constructor(bytes: BufferSource | SharedArrayBuffer);
+  constructor(bytes: Bytes);
   /** Content hash, 16 hexadecimal digits. */
   readonly hash: string;
   readonly jointCount: number;
@@ -192,12 +195,40 @@ export declare class Character {
   /** Saves the state, to `out` or to new bytes. */
   saveState(out?: Uint8Array): Uint8Array;
   /** Restores a state; the next step goes on from it bit for bit. */
-  loadState(bytes: BufferSource): void;
+  loadState(bytes: Bytes): void;
 
   readonly digests: Digests;
+
+  /** Begins a recording, with a snapshot of the state after every `snapshotEvery`-th step (60). It grows in memory. */
+  record(snapshotEvery?: number): void;
+  readonly recording: boolean;
+  /** Ends the recording: the bytes of a replay. */
+  stopRecording(): Uint8Array;
 
   /** Frees the memory. Twice is harmless; every other method throws afterwards. */
   dispose(): void;
   /** The same as {@link dispose}. */
   free(): void;
 }
+
+/** What verifying a replay found. */
+export interface Verdict {
+  /** Whether every frame came out the same, to the bit. */
+  same: boolean;
+  frames: number;
+  /** Digest of the whole run, 16 hexadecimal digits. */
+  digest: string;
+  /** In words. */
+  message: string;
+  /** The first frame that differs. */
+  frame?: number;
+  /** The earliest stage that differs there; `undefined` where it is the replay that is damaged. */
+  stage?: string | undefined;
+}
+
+/**
+ * Runs a replay again on a new character of `asset`, to the first difference.
+ *
+ * @throws Error for bytes that are no replay of this asset, or whose inputs are damaged.
+ */
+export declare function verify(asset: Asset, replay: Bytes): Verdict;

@@ -31,6 +31,8 @@ pub struct RawCharacter {
     pose: Vec<Affine>,
     /// While it is recorded.
     tape: Option<Tape<Vec<u8>>>,
+    /// Why the last step was refused.
+    refusal: Option<RecordError>,
     /// Made when first asked for: share of the largest offset of each render vertex.
     heat: Vec<f32>,
     /// Made when first asked for: skinned positions, then normals.
@@ -66,7 +68,7 @@ impl RawCharacter {
         })?;
         let pose = filled(joints, sinew::math::affine::IDENTITY)?;
         let (heat, skinned, state) = (Vec::new(), Vec::new(), Aligned::default());
-        Ok(Self { living, pose, tape: None, heat, skinned, state })
+        Ok(Self { living, pose, tape: None, refusal: None, heat, skinned, state })
     }
 
     fn get(&self) -> &Character<'_> {
@@ -97,23 +99,10 @@ impl RawCharacter {
         address(self.get().offsets())
     }
 
-    /// Advances by `dt` seconds to the pose filled in; true where the buffers are new.
-    ///
-    /// # Errors
-    ///
-    /// As [`Character::step`].
+    /// Advances by `dt` seconds to the pose filled in: 1 where the buffers are new, 0 where nothing was due, 2
+    /// where the step was refused. [`Self::refusal`] tells why: a `Result` would cost JavaScript an array a step.
     #[allow(clippy::too_many_arguments, reason = "numbers cross without an allocation, arrays do not")]
-    pub fn step(
-        &mut self,
-        x: f64,
-        y: f64,
-        z: f64,
-        qx: f32,
-        qy: f32,
-        qz: f32,
-        qw: f32,
-        dt: f32,
-    ) -> Result<bool, JsError> {
+    pub fn step(&mut self, x: f64, y: f64, z: f64, qx: f32, qy: f32, qz: f32, qw: f32, dt: f32) -> u32 {
         let root = Root { translation: [x, y, z], rotation: [qx, qy, qz, qw] };
         let (tape, pose) = (&mut self.tape, Pose { root, root_from_joint: &self.pose });
         let stepped = self.living.with_dependent_mut(|_, character| match tape {
@@ -123,11 +112,7 @@ impl RawCharacter {
         self.told(stepped)
     }
 
-    /// Advances by `dt` seconds to a clip at `time`, s; true where the buffers are new.
-    ///
-    /// # Errors
-    ///
-    /// As [`Character::step_clip`].
+    /// As [`Self::step`], to a clip at `time`, s.
     #[allow(clippy::too_many_arguments, reason = "numbers cross without an allocation, arrays do not")]
     pub fn step_clip(
         &mut self,
@@ -141,7 +126,7 @@ impl RawCharacter {
         qz: f32,
         qw: f32,
         dt: f32,
-    ) -> Result<bool, JsError> {
+    ) -> u32 {
         let root = Root { translation: [x, y, z], rotation: [qx, qy, qz, qw] };
         let tape = &mut self.tape;
         let stepped = self.living.with_dependent_mut(|_, character| match tape {
@@ -151,12 +136,29 @@ impl RawCharacter {
         self.told(stepped)
     }
 
-    /// What a step did; a recording that has no room left ends.
-    fn told(&mut self, stepped: Result<Stepped, RecordError>) -> Result<bool, JsError> {
-        self.keep(stepped).map(|stepped| stepped == Stepped::Advanced)
+    /// What a step did, as a number.
+    fn told(&mut self, stepped: Result<Stepped, RecordError>) -> u32 {
+        match stepped {
+            Ok(Stepped::Held) => 0,
+            Ok(Stepped::Advanced) => 1,
+            Err(error) => {
+                self.refusal = Some(error);
+                2
+            }
+        }
     }
 
-    fn keep<T>(&mut self, result: Result<T, RecordError>) -> Result<T, JsError> {
+    /// Throws why the last step was refused. A recording that has no room left ends.
+    ///
+    /// # Errors
+    ///
+    /// That.
+    pub fn refusal(&mut self) -> Result<(), JsError> {
+        let refusal = self.refusal.take();
+        self.keep(refusal.map_or(Ok(()), Err))
+    }
+
+    fn keep(&mut self, result: Result<(), RecordError>) -> Result<(), JsError> {
         if matches!(result, Err(RecordError::SinkFull)) {
             self.tape = None;
         }

@@ -84,6 +84,6 @@ fn find(name: &str, uri: &str, resolve: &Function) -> Result<Vec<u8>, Error> {
 #[wasm_bindgen(js_name = builtin)]
 pub fn builtin_character() -> Result<RawBaked, JsError> {
     let model = builtin::character();
-    let glb = export::to_glb(&model)?;
+    let glb = export::glb::to_glb(&model)?;
     Ok(RawBaked { glb, ..baked(&model, &Recipe::default(), 0)? })
 }

@@ -21,9 +21,9 @@ export function findMeshes({ scene, parser }, asset) {
     const { meshes, primitives = 0, nodes } = parser.associations.get(mesh) ?? {};
     // One of several primitives hangs below its node.
     const node = nodes ?? parser.associations.get(mesh.parent)?.nodes;
-    const primitive = asset.primitives.find(
-      (row) => row.node === node && row.mesh === meshes && row.primitive === primitives,
-    );
+    const rows = asset.primitives.filter((row) => row.mesh === meshes && row.primitive === primitives);
+    // The node tells instances of a mesh apart; a lone one may hang elsewhere in a file made anew.
+    const primitive = rows.length > 1 ? rows.find((row) => row.node === node) : rows[0];
     if (primitive === undefined) return; // not baked: lines, points, or a file of several scenes
     const { count } = mesh.geometry.attributes.position;
     if (count !== primitive.count) {
