@@ -34,6 +34,8 @@ export const hooks = (page, { version, simd }) => ({
     });
     return out;
   },
+  /** The picture at its best, until slow frames lower it again. */
+  sharpen: () => page.quality.raise(),
   /** The replay at hand, with `change(bytes)` done to a copy, verified. */
   verify(change = () => {}) {
     const bytes = page.replay.bytes.slice();

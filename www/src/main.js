@@ -33,7 +33,7 @@ export class Page {
 
   constructor(canvas) {
     this.stage = new Stage(canvas, { calm });
-    this.quality = new Quality(this.stage, new URLSearchParams(location.search).has('full'));
+    this.quality = new Quality(this.stage);
     this.figures = new Figures({ simd });
     this.feel = new Feel();
     this.replay = new Replay(() => this.panel.flesh.set(true)); // without flesh there are no steps
@@ -148,9 +148,9 @@ async function main() {
     console.warn(error);
     throw new Problem('This page needs WebGL 2', 'Turn on hardware acceleration in the settings of your browser, or open the page in another one.');
   }
+  page.stage.renderer.setAnimationLoop((now) => page.tick(now));
   await init();
   page.show(await busy('Growing the character', builtin));
-  page.stage.renderer.setAnimationLoop((now) => page.tick(now));
   globalThis.sinew = hooks(page, { version: version(), simd });
 }
 
