@@ -28,11 +28,11 @@ after(async () => {
 });
 
 /** A page that is ready, and the errors it has reported so far. */
-async function open(options, errors = [], query = '') {
+async function open(options, errors = []) {
   const page = await browser.newPage(options);
   page.setDefaultTimeout(120_000);
   watch(page, errors);
-  await page.goto(url + query);
+  await page.goto(url);
   await page.waitForFunction(() => document.documentElement.dataset.state);
   assert.equal(await page.evaluate(() => document.documentElement.dataset.state), 'ready', errors.join('\n'));
   return page;
@@ -53,6 +53,11 @@ const moved = (page) => page.evaluate(() => {
   }
   return count;
 });
+const picture = async (page, name) => {
+  await page.evaluate(() => globalThis.sinew.sharpen());
+  await frames(page, 2);
+  await screenshot(page, name);
+};
 const message = (page) => page.evaluate(() => {
   const box = document.querySelector('#message');
   return box.hidden ? '' : box.innerText;
@@ -218,18 +223,18 @@ describe('the page', () => {
 describe('pictures', () => {
   test('of a wide window', async () => {
     const errors = [];
-    const page = await open({ viewport: WIDE }, errors, '?full');
+    const page = await open({ viewport: WIDE }, errors);
     await frames(page, 4);
-    await screenshot(page, 'wide.png');
+    await picture(page, 'wide.png');
     await page.keyboard.press('s');
     await page.keyboard.press('h');
     await frames(page, 6);
-    await screenshot(page, 'wide-side-heat.png');
+    await picture(page, 'wide-side-heat.png');
     if (!skip) {
       await page.keyboard.press('h');
       await page.keyboard.press('s');
       await dropModel(page, FOX);
-      await screenshot(page, 'wide-fox.png');
+      await picture(page, 'wide-fox.png');
     }
     assert.deepEqual(errors, []);
     await page.close();
@@ -237,13 +242,13 @@ describe('pictures', () => {
 
   test('of a phone, where nothing overflows', async () => {
     const errors = [];
-    const page = await open(PHONE, errors, '?full');
+    const page = await open(PHONE, errors);
     await frames(page, 4);
-    await screenshot(page, 'phone.png');
+    await picture(page, 'phone.png');
     await page.tap('#grip');
     await page.waitForTimeout(300);
     await frames(page, 6);
-    await screenshot(page, 'phone-open.png');
+    await picture(page, 'phone-open.png');
     await page.setViewportSize({ width: 360, height: 640 });
     await frames(page, 2);
     const wide = await page.evaluate(() => [...document.querySelectorAll('#panel *, .brand *')]

@@ -1,6 +1,5 @@
 // What stands on the stage: a model, its clips, its flesh, and its twin without.
 import * as THREE from 'three';
-import { Asset } from 'sinew-wasm';
 import { SinewCharacter } from 'sinew-wasm/three';
 import { CURVE_SECONDS, curve } from './motion.js';
 import { Twin } from './twin.js';
@@ -31,8 +30,8 @@ export class Actor {
     this.animations = gltf.animations;
     this.clips = [...gltf.animations.map((clip, i) => clip.name || `Clip ${i + 1}`), 'Root shake (built in)'];
     this.box = this.#measure();
-    this.asset = new Asset(asset);
-    this.character = new SinewCharacter(gltf, this.asset);
+    this.character = new SinewCharacter(gltf, asset);
+    this.asset = this.character.asset;
     this.play(0);
   }
 
@@ -151,7 +150,6 @@ export class Actor {
 
   dispose() {
     this.character.dispose();
-    this.asset.dispose();
     this.twin.dispose();
     this.mixer.stopAllAction();
     this.root.removeFromParent();

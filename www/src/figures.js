@@ -46,7 +46,7 @@ export class Figures {
 
   constructor({ simd }) {
     const rows = [
-      ['vertices', 'Vertices'], ['points', 'Moving points'], ['median', 'sinew, median'], ['p95', 'sinew, 95th percentile'],
+      ['points', 'Moving points of vertices'], ['cost', 'Median, 95th percentile'],
       ['fps', 'Frames per second'], ['asset', 'Asset'], ['flavor', 'Runtime'],
     ];
     const list = document.querySelector('#figures');
@@ -66,8 +66,8 @@ export class Figures {
   attach({ asset, assetBytes }) {
     this.#cost.clear();
     this.#frame.clear();
-    this.#cells.vertices.textContent = count(asset.vertexCount);
-    this.#cells.points.textContent = this.moving.textContent = count(asset.pointCount);
+    this.moving.textContent = count(asset.pointCount);
+    this.#cells.points.textContent = `${count(asset.pointCount)} of ${count(asset.vertexCount)}`;
     this.#cells.asset.textContent = bytes(assetBytes.length);
   }
 
@@ -82,7 +82,7 @@ export class Figures {
     this.#due = now + EVERY_MS;
     if (this.#frame.length) this.#cells.fps.textContent = Math.round(1000 / this.#frame.quantile(0.5));
     if (!this.#cost.length) return;
-    this.#cells.median.textContent = this.median.textContent = micros(this.#cost.quantile(0.5));
-    this.#cells.p95.textContent = micros(this.#cost.quantile(0.95));
+    this.median.textContent = micros(this.#cost.quantile(0.5));
+    this.#cells.cost.textContent = `${this.median.textContent}, ${micros(this.#cost.quantile(0.95))}`;
   }
 }

@@ -28,10 +28,14 @@ export const hooks = (page, { version, simd }) => ({
   positions(twin = false) {
     const out = [];
     (twin ? page.actor.twin.root : page.actor.model).traverse((node) => {
-      if (node.isSkinnedMesh) out.push(...node.geometry.attributes.position.array);
+      if (!node.isSkinnedMesh) return;
+      const { position } = node.geometry.attributes; // may be interleaved with others
+      for (let i = 0; i < position.count; i++) out.push(position.getX(i), position.getY(i), position.getZ(i));
     });
     return out;
   },
+  /** The picture at its best, until slow frames lower it again. */
+  sharpen: () => page.quality.raise(),
   /** The replay at hand, with `change(bytes)` done to a copy, verified. */
   verify(change = () => {}) {
     const bytes = page.replay.bytes.slice();

@@ -33,10 +33,10 @@ export class Page {
 
   constructor(canvas) {
     this.stage = new Stage(canvas, { calm });
-    this.quality = new Quality(this.stage, new URLSearchParams(location.search).has('full'));
+    this.quality = new Quality(this.stage);
     this.figures = new Figures({ simd });
     this.feel = new Feel();
-    this.replay = new Replay();
+    this.replay = new Replay(() => this.panel.flesh.set(true)); // without flesh there are no steps
     this.panel = new Panel({
       flesh: () => this.apply(),
       heat: () => this.apply(),
@@ -127,7 +127,7 @@ export class Page {
     if (actor && delta > 0) {
       this.motion.update(delta);
       actor.update(this.playing ? delta : 0, delta, this.motion.offset);
-      this.replay.frame();
+      if (actor.character.enabled) this.replay.frame();
       this.figures.add(actor.character.enabled ? actor.character.stats.microseconds : null, elapsed);
       this.figures.show(now);
       stage.follow(actor.center(point));
@@ -148,9 +148,9 @@ async function main() {
     console.warn(error);
     throw new Problem('This page needs WebGL 2', 'Turn on hardware acceleration in the settings of your browser, or open the page in another one.');
   }
+  page.stage.renderer.setAnimationLoop((now) => page.tick(now));
   await init();
   page.show(await busy('Growing the character', builtin));
-  page.stage.renderer.setAnimationLoop((now) => page.tick(now));
   globalThis.sinew = hooks(page, { version: version(), simd });
 }
 

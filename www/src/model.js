@@ -19,9 +19,9 @@ export async function fromFile(bytes, name) {
 
 /** The character that comes with the page. */
 export async function builtin() {
-  const { glb, asset } = await baker.builtin();
-  const gltf = await parse(glb, 'The built-in character');
-  return actor({ name: 'Built-in character', gltf, asset, notes: [] });
+  const { glb, asset, notes } = await baker.builtin();
+  const gltf = await parse(glb, 'Plum');
+  return actor({ name: 'Plum', gltf, asset, notes });
 }
 
 async function parse(bytes, name) {

@@ -16,11 +16,15 @@ export function showProblem(problem, fatal = false) {
   message.hidden = false;
 }
 
+let latest = 0; // of several tasks, the last one is shown
+
 /** Shows `what` and the seconds gone by until `task` has ended. */
 export async function busy(what, task) {
   const text = busyBox.querySelector('span');
+  const own = ++latest;
   const since = performance.now();
   const tell = () => {
+    if (own !== latest) return;
     const seconds = Math.floor((performance.now() - since) / 1000);
     text.textContent = seconds > 0 ? `${what} · ${seconds} s` : what;
   };
@@ -31,6 +35,6 @@ export async function busy(what, task) {
     return await task();
   } finally {
     clearInterval(timer);
-    busyBox.hidden = true;
+    if (own === latest) busyBox.hidden = true;
   }
 }

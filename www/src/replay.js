@@ -19,7 +19,9 @@ export class Replay {
   #actor = null;
   #button = $('#record');
 
-  constructor() {
+  /** @param {() => void} onStart before a recording begins */
+  constructor(onStart) {
+    this.onStart = onStart;
     this.#button.addEventListener('click', () => this.toggle());
     $('#verify').addEventListener('click', () => this.check(this.bytes));
     $('#tamper').addEventListener('click', () => this.#tamper());
@@ -53,6 +55,7 @@ export class Replay {
   }
 
   #start(character) {
+    this.onStart();
     character.record();
     this.recording = true;
     this.frames = 0;
@@ -82,7 +85,7 @@ export class Replay {
   /** Runs a replay again and tells what came out. */
   check(bytes) {
     const verdict = this.verify(bytes);
-    if (verdict.same) this.#say(`✓ ${verdict.message}`, 'good');
+    if (verdict.same) this.#say(`✓ ${count(verdict.frames)} frames, identical. Digest ${verdict.digest}`, 'good');
     else this.#say(`✗ ${verdict.message}`, 'bad');
     return verdict;
   }

@@ -19,6 +19,7 @@ export class Stage {
   #followed = new THREE.Vector3();
   #goal = null;
   #maxRatio = 2;
+  #reflections;
   #raycaster = new THREE.Raycaster();
   /** Size of what stands here: half the diagonal of its box, world units. */
   unit = 1;
@@ -43,7 +44,8 @@ export class Stage {
 
   #light() {
     const pmrem = new THREE.PMREMGenerator(this.renderer);
-    this.scene.environment = pmrem.fromScene(new RoomEnvironment(), 0.04).texture;
+    this.#reflections = pmrem.fromScene(new RoomEnvironment(), 0.04).texture;
+    this.scene.environment = this.#reflections;
     this.scene.environmentIntensity = 0.2;
     pmrem.dispose();
     const sun = (color, intensity, x, y, z) => {
@@ -74,11 +76,11 @@ export class Stage {
     this.resize();
   }
 
-  /** Light for machines without a graphics card: no reflections, coarser shadow. */
-  plain() {
-    this.scene.environment = null;
+  /** For machines without a graphics card: light without reflections, coarser shadow. */
+  plain(plain) {
+    this.scene.environment = plain ? null : this.#reflections;
     const { shadow } = this.#key;
-    shadow.mapSize.set(1024, 1024);
+    shadow.mapSize.setScalar(plain ? 1024 : 2048);
     shadow.map?.dispose();
     shadow.map = null;
   }
@@ -105,14 +107,14 @@ export class Stage {
     this.ground.fit(box.min.y, this.unit);
     this.#followed.copy(center);
     this.follow(center);
-    const far = 40 * this.unit;
+    const far = 100 * this.unit;
     const { shadow } = this.#key;
     Object.assign(shadow.camera, { left: -2.2 * this.unit, right: 2.2 * this.unit, top: 2.2 * this.unit, bottom: -2.2 * this.unit, near: 0.1 * this.unit, far: 12 * this.unit });
     shadow.camera.updateProjectionMatrix();
     shadow.normalBias = 0.012 * this.unit;
     this.#key.position.set(1.5, 2.6, 1.9).multiplyScalar(1.6 * this.unit);
     Object.assign(this.camera, { near: this.unit / 60, far });
-    Object.assign(this.controls, { minDistance: 0.6 * this.unit, maxDistance: 14 * this.unit });
+    Object.assign(this.controls, { minDistance: 0.6 * this.unit, maxDistance: 40 * this.unit });
     const side = keepView ? point.copy(this.camera.position).sub(this.controls.target).normalize().clone() : (abreast ? ABREAST : FRONT).clone();
     const target = center.clone();
     const position = side.clone().multiplyScalar(this.#distance(size, side)).add(target);

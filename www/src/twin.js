@@ -2,25 +2,11 @@
 import * as THREE from 'three';
 import { clone } from 'three/addons/utils/SkeletonUtils.js';
 
-/** Shares everything but what flesh writes to. */
-function untouched(geometry) {
-  const copy = new THREE.BufferGeometry();
-  copy.setIndex(geometry.index);
-  for (const [name, attribute] of Object.entries(geometry.attributes)) {
-    copy.setAttribute(name, name === 'position' || name === 'normal' ? attribute.clone() : attribute);
-  }
-  copy.morphAttributes = geometry.morphAttributes;
-  copy.morphTargetsRelative = geometry.morphTargetsRelative;
-  for (const { start, count, materialIndex } of geometry.groups) copy.addGroup(start, count, materialIndex);
-  return copy;
-}
-
 export class Twin {
   root = new THREE.Group();
   #pairs = [];
-  #geometries = [];
 
-  /** @param {THREE.Object3D} scene of a model that has no flesh yet */
+  /** @param {THREE.Object3D} scene of a model that has no flesh yet: its geometries stay as they are, and are shared */
   constructor(scene) {
     const copy = clone(scene);
     const originals = [];
@@ -28,9 +14,6 @@ export class Twin {
     copy.traverse((node) => {
       this.#pairs.push([originals[this.#pairs.length], node]);
       node.frustumCulled = false;
-      if (!node.geometry) return;
-      node.geometry = untouched(node.geometry);
-      this.#geometries.push(node.geometry);
     });
     this.root.add(copy);
     this.root.visible = false;
@@ -49,7 +32,6 @@ export class Twin {
 
   dispose() {
     this.root.removeFromParent();
-    for (const geometry of this.#geometries) geometry.dispose();
     for (const [, node] of this.#pairs) node.skeleton?.dispose();
   }
 }
