@@ -62,7 +62,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     let symmetry = Symmetry::new(&surface);
     let mut skeleton = Skeleton::new(model, &surface);
     anatomy::classify(&mut skeleton, &surface, &symmetry);
-    let mut field = field::measure(&surface, &skeleton);
+    let mut field = field::measure(&surface, &skeleton, &symmetry);
     symmetry.average(&mut field.soft);
     let pieces = smooth::pieces(&surface);
     let mut soft = field.soft.clone();

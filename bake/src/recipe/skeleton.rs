@@ -16,7 +16,7 @@ pub(super) enum Part {
     Limb,
     /// Head, feet, jaw, eyes.
     Rigid,
-    /// Tail, ear, tuft: soft towards the tip; index into [`Skeleton::chains`].
+    /// Tail, ear: soft towards the tip; index into [`Skeleton::chains`].
     Chain(usize),
     /// A control inside the flesh (belly, breast): belongs to the bone above.
     Flesh,
@@ -39,6 +39,8 @@ pub(super) struct Bone {
     pub(super) along: f64,
     /// Where the bone points to: its heaviest child, or the farthest skin of a last joint.
     pub(super) tip: DVec3,
+    /// The pelvis: the first joint that legs are attached to.
+    pub(super) seat: bool,
     /// Joints from the top of the skeleton.
     pub(super) depth: usize,
 }
@@ -46,12 +48,10 @@ pub(super) struct Bone {
 /// An appendage moved by joints of its own.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chain {
-    /// First bone.
-    pub(super) root: usize,
-    /// Hangs on the head and has a twin.
-    pub(super) ear: bool,
     /// Longest way along the chain to its skin, body sizes.
     pub(super) length: f64,
+    /// Hangs on the head and has a twin.
+    pub(super) ear: bool,
 }
 
 /// Bones, parents before children.
@@ -63,6 +63,10 @@ pub(super) struct Skeleton {
     pub(super) bone_of: BTreeMap<usize, usize>,
     /// Length of the limb of each limb bone.
     pub(super) limb_length: BTreeMap<usize, f64>,
+    /// Bones of the head that carry the skull.
+    pub(super) skull: Vec<usize>,
+    /// Where the character looks: the sign of z.
+    pub(super) front: f64,
 }
 
 impl Skeleton {
@@ -99,6 +103,7 @@ impl Skeleton {
                 below: own[node],
                 along: 0.0,
                 tip: position,
+                seat: false,
                 depth,
             });
         }
@@ -109,6 +114,12 @@ impl Skeleton {
         }
         skeleton.set_tips(surface);
         skeleton
+    }
+
+    /// Distance of a joint from the one above, 0 at the top.
+    pub(super) fn start(&self, bone: usize) -> f64 {
+        let above = self.bones[bone].parent.unwrap_or(bone);
+        self.bones[above].position.distance(self.bones[bone].position)
     }
 
     /// A bone and all below it, in order.
