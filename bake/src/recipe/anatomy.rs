@@ -11,14 +11,14 @@ const ARM: f64 = 0.12;
 /// A paired branch that reaches below this share of the height is a leg.
 const GROUND: f64 = 0.08;
 /// Share of its own reach by which a branch's middle must be off its base to be an extremity.
-const OFF_BASE: f64 = 0.18;
+const OFF_BASE: f64 = 0.2;
 /// Shortest ear or tail, body sizes.
 const SHORTEST: f64 = 0.03;
 /// Smallest ratio of length to width of an ear or tail.
 const ELONGATED: f64 = 0.6;
 
-/// A head's middle may be nearer to its base.
-const HEAD_OFF_BASE: f64 = 0.15;
+/// The same for a head.
+const HEAD_OFF_BASE: f64 = 0.19;
 /// A branch that starts farther than this from the joint above (body sizes) is no control inside the flesh.
 const CONTROL: f64 = 0.1;
 /// A branch's skin is what it holds by half (weights are rounded in files).
@@ -147,19 +147,10 @@ fn head(skeleton: &Skeleton, branches: &[Branch], ends: &[usize], limbs: &[usize
     sticking.max_by(|x, y| score(*x).total_cmp(&score(*y)).then(y.cmp(x)))
 }
 
-/// Neck and head are rigid; the skull is the last bulky bone and what hangs on it.
+/// Neck and head are rigid, but for ears.
 fn set_head(skeleton: &mut Skeleton, surface: &Surface, branches: &[Branch], end: usize) {
     set(skeleton, end, Part::Rigid);
-    let inside = skeleton.subtree(end);
-    let most = inside.iter().map(|b| skeleton.bones[*b].own).fold(0.0, f64::max);
-    let bulky = inside.iter().copied().filter(|b| skeleton.bones[*b].own >= 0.5 * most);
-    let Some(mut skull) = bulky.max_by_key(|b| (skeleton.bones[*b].depth, *b)) else { return };
-    while let Some(p) = skeleton.bones[skull].parent.filter(|p| inside.contains(p)) {
-        if skeleton.start(skull) > SKULL || skeleton.bones[p].own < 0.3 * skeleton.bones[skull].own {
-            break;
-        }
-        skull = p;
-    }
+    let Some(skull) = skull(skeleton, branches, end) else { return };
     // Ears with joints of their own: pairs that sit high.
     for b in skeleton.subtree(skull).into_iter().skip(1) {
         let branch = branches[b];
@@ -171,6 +162,25 @@ fn set_head(skeleton: &mut Skeleton, surface: &Surface, branches: &[Branch], end
     }
     let rigid = |b: &usize| skeleton.bones[*b].part == Part::Rigid;
     skeleton.skull = skeleton.subtree(skull).into_iter().filter(rigid).collect();
+}
+
+/// The first bone of the skull: the one that pairs (ears, eyes) hang on, or the last bulky one.
+fn skull(skeleton: &Skeleton, branches: &[Branch], end: usize) -> Option<usize> {
+    let inside = skeleton.subtree(end);
+    let forks = |b: &usize| skeleton.bones[*b].children.iter().any(|c| branches[*c].paired);
+    if let Some(fork) = inside.iter().copied().find(forks) {
+        return Some(fork);
+    }
+    let most = inside.iter().map(|b| skeleton.bones[*b].own).fold(0.0, f64::max);
+    let bulky = inside.iter().copied().filter(|b| skeleton.bones[*b].own >= 0.5 * most);
+    let mut skull = bulky.max_by_key(|b| (skeleton.bones[*b].depth, *b))?;
+    while let Some(p) = skeleton.bones[skull].parent.filter(|p| inside.contains(p)) {
+        if skeleton.start(skull) > SKULL || skeleton.bones[p].own < 0.3 * skeleton.bones[skull].own {
+            break;
+        }
+        skull = p;
+    }
+    Some(skull)
 }
 
 fn set_limb(skeleton: &mut Skeleton, surface: &Surface, limb: usize, leg: bool) {
@@ -241,8 +251,8 @@ fn measure(skeleton: &Skeleton, surface: &Surface, symmetry: &Symmetry, bone: us
         middle += *p * area;
         if share[i] > HALF {
             branch.lowest = f64::min(branch.lowest, p.y / height);
-            if surface.links[i].iter().any(|(j, _)| share[*j] <= HALF) {
-                base += *p;
+            for (j, _) in surface.links[i].iter().filter(|(j, _)| share[*j] <= HALF) {
+                base += (*p + surface.points[*j]) / 2.0;
                 rim += 1.0;
             }
         }

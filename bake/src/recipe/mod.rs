@@ -78,6 +78,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     symmetry.average(&mut soft);
     leave_springs(model, &surface, &mut soft, &mut notes);
     regions.split_limbs(&surface, &field, recipe, &soft);
+    regions.drop_unused();
     let was_painted = painted.iter().flatten().count();
     if was_painted > 0 {
         notes.push(format!("{was_painted} points have painted softness"));

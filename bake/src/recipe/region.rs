@@ -133,6 +133,23 @@ impl Regions {
     }
 }
 
+impl Regions {
+    /// Drops regions without points; the body's stays.
+    pub(super) fn drop_unused(&mut self) {
+        let mut number = vec![0; self.list.len()];
+        let mut kept = Vec::new();
+        for (at, region) in self.list.drain(..).enumerate() {
+            number[at] = kept.len();
+            if at == 0 || self.of.iter().any(|r| usize::from(*r) == at) {
+                kept.push(region);
+            }
+        }
+        self.list = kept;
+        #[expect(clippy::cast_possible_truncation, reason = "at most 16 regions")]
+        self.of.iter_mut().for_each(|r| *r = number[usize::from(*r)] as u8);
+    }
+}
+
 /// Points that a recipe's rules are about, rule by rule: share of each point.
 pub(super) fn shares(model: &Model, surface: &Surface, recipe: &Recipe) -> Vec<Vec<f64>> {
     let of_rule = |rule: &super::rules::Rule| {

@@ -78,7 +78,6 @@ impl Skeleton {
         order.sort_by_key(|n| (depth[*n], *n));
         let kept = kept_nodes(model, &own, &order);
         let rest = model.rest_transforms();
-        let scale = Scale::new(model, surface);
         let mut skeleton = Self::default();
         for node in order.into_iter().filter(|n| kept[*n]) {
             let mut above = model.nodes[node].parent;
@@ -91,7 +90,7 @@ impl Skeleton {
             if let Some(p) = parent {
                 skeleton.bones[p].children.push(index);
             }
-            let position = scale.point(rest[node].w_axis.truncate());
+            let position = (rest[node].w_axis.truncate() - surface.corner) / surface.size;
             skeleton.bone_of.insert(node, index);
             skeleton.bones.push(Bone {
                 node,
@@ -184,24 +183,6 @@ impl Skeleton {
             });
             self.bones[b].tip = heaviest.map_or(farthest[b].1, |c| self.bones[*c].position);
         }
-    }
-}
-
-/// Model units to body sizes, as the surface does it.
-struct Scale {
-    corner: DVec3,
-    size: f64,
-}
-
-impl Scale {
-    fn new(model: &Model, surface: &Surface) -> Self {
-        let first = model.rest_positions().first().copied().unwrap_or_default();
-        let point = surface.point_of.first().map_or(DVec3::ZERO, |p| surface.points[*p]);
-        Self { corner: first - point * surface.size, size: surface.size }
-    }
-
-    fn point(&self, p: DVec3) -> DVec3 {
-        (p - self.corner) / self.size
     }
 }
 

@@ -9,7 +9,7 @@ const EVEN: f64 = 0.014;
 /// Passes of the solver.
 const PASSES: usize = 80;
 /// What is below this after smoothing is rigid.
-const FLOOR: f64 = 0.03;
+const FLOOR: f64 = 0.04;
 /// Steepest change of softness per body size.
 const STEEPEST: f64 = 25.0;
 /// Shells with a box smaller than this (body sizes) move as a piece.
