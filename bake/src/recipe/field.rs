@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::mirror::Symmetry;
 use super::protrusion::{self, Protrusion};
 use super::skeleton::{Part, Skeleton};
 use super::surface::Surface;
@@ -11,7 +12,9 @@ const SHALLOW: f64 = 0.3;
 /// Least depth that counts as deepest flesh, body sizes.
 const LEAST_DEPTH: f64 = 0.04;
 /// Along a limb (0 at the trunk, 1 at the fingertips) flesh hardens between these places.
-const LIMB: (f64, f64) = (0.4, 0.7);
+const LIMB: (f64, f64) = (0.3, 0.65);
+/// Softness of the back, share of the belly's; of the rump.
+const BACK: (f64, f64) = (0.3, 0.65);
 
 /// What a point belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,7 +46,7 @@ pub(super) fn ease(low: f64, high: f64, x: f64) -> f64 {
 }
 
 /// Measures all points.
-pub(super) fn measure(surface: &Surface, skeleton: &Skeleton) -> Field {
+pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetry) -> Field {
     let frame = Frame::new(skeleton);
     let depth = deepest(surface, &frame);
     let count = surface.points.len();
@@ -54,17 +57,18 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton) -> Field {
         depth,
         limb: vec![0.0; count],
     };
-    let mut head = vec![false; count];
+    let skull = skeleton.share(surface, &skeleton.skull);
+    let head: Vec<bool> = skull.iter().map(|s| *s > 0.5).collect();
     for (i, p) in surface.points.iter().enumerate() {
-        let (mut rigid, mut best) = (0.0, (0.5, Label::Body));
+        let (mut body, mut best) = (0.0, (0.5, Label::Body));
         for (bone, w) in frame.bones(&surface.weights[i]) {
             match frame.part(bone) {
-                Part::Rigid => rigid += w,
-                Part::Trunk | Part::Flesh => field.soft[i] += w * frame.flesh(bone, *p, depth),
+                Part::Rigid => {}
+                Part::Trunk | Part::Flesh => body += w * frame.flesh(bone, *p, depth),
                 Part::Limb => {
                     let length = skeleton.limb_length.get(&bone).copied().unwrap_or(1.0).max(1e-9);
                     let place = skeleton.arc(bone, *p) / length;
-                    field.soft[i] += w * frame.flesh(bone, *p, depth) * (1.0 - ease(LIMB.0, LIMB.1, place));
+                    body += w * frame.flesh(bone, *p, depth) * (1.0 - ease(LIMB.0, LIMB.1, place));
                     field.limb[i] += w;
                 }
                 Part::Chain(k) => {
@@ -78,9 +82,10 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton) -> Field {
             }
         }
         field.label[i] = best.1;
-        head[i] = rigid > 0.5;
+        // Tails are as soft on all sides, bodies are not.
+        field.soft[i] += body * frame.side(*p);
     }
-    field.protrusions = protrusion::find(surface, &head);
+    field.protrusions = protrusion::find(surface, symmetry, &head);
     for (k, protrusion) in field.protrusions.iter().enumerate() {
         for (i, place) in &protrusion.points {
             let soft = ease(0.0, 0.95, *place);
@@ -137,15 +142,48 @@ impl<'a> Frame<'a> {
     }
 
     fn distance(&self, bone: usize, p: DVec3) -> f64 {
+        self.nearest(bone, p).0
+    }
+
+    /// Distance from a bone, and the way from it.
+    fn nearest(&self, bone: usize, p: DVec3) -> (f64, DVec3) {
         let to = |(a, b): &(DVec3, DVec3)| {
             let along = *b - *a;
             let t = (along.dot(p - *a) / along.length_squared().max(1e-18)).clamp(0.0, 1.0);
-            p.distance(*a + along * t)
+            let way = p - (*a + along * t);
+            (way.length(), way)
         };
-        self.segments[bone].iter().map(to).fold(f64::INFINITY, f64::min)
+        let ways = self.segments[bone].iter().map(to);
+        ways.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, DVec3::ZERO))
+    }
+
+    /// Bellies are softer than backs: 1 on the side of the belly (below a level spine, in front of an upright one).
+    fn side(&self, p: DVec3) -> f64 {
+        let bones = &self.skeleton.bones;
+        let trunk = (0..bones.len()).filter(|b| bones[*b].part == Part::Trunk);
+        let near = trunk.map(|b| (self.nearest(b, p), b)).min_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        let Some(((_, way), bone)) = near else { return 1.0 };
+        let spine = self.spine(bone);
+        let belly = DVec3::new(0.0, -1.0, self.skeleton.front);
+        let belly = (belly - spine * belly.dot(spine)).normalize_or_zero();
+        let back = if bones[bone].seat { BACK.1 } else { BACK.0 };
+        let side = (way - spine * way.dot(spine)).normalize_or_zero().dot(belly);
+        back + (1.0 - back) * ease(-0.7, 0.5, side)
+    }
+
+    /// Direction of the trunk at a bone: from the bone above to the one below.
+    fn spine(&self, bone: usize) -> DVec3 {
+        let bones = &self.skeleton.bones;
+        let below = bones[bone].children.iter().filter(|c| matches!(bones[**c].part, Part::Trunk | Part::Rigid));
+        let next = below.max_by(|a, b| bones[**a].below.total_cmp(&bones[**b].below).then(b.cmp(a)));
+        let above = bones[bone].parent.map_or(bone, |p| if bones[p].own > 0.02 * bones[bone].own { p } else { bone });
+        (bones[next.copied().unwrap_or(bone)].position - bones[above].position).normalize_or_zero()
     }
 
     fn flesh(&self, bone: usize, p: DVec3, depth: f64) -> f64 {
+        if self.skeleton.limb_length.is_empty() && !self.skeleton.chains.is_empty() {
+            return 0.0; // A tail alone: the root holds it.
+        }
         ease(SHALLOW * depth, depth, self.distance(bone, p))
     }
 }

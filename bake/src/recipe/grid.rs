@@ -31,10 +31,7 @@ impl Grid {
         })
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "coordinates are in body sizes, the edge at least 1e-6"
-    )]
+    #[expect(clippy::cast_possible_truncation, reason = "coordinates are in body sizes, the edge at least 1e-6")]
     fn cube(&self, p: DVec3) -> [i64; 3] {
         (p / self.edge).floor().to_array().map(|c| c as i64)
     }

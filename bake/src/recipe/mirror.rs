@@ -45,9 +45,11 @@ impl Symmetry {
             let (low, high) = span(positions);
             let size = (high - low).length().max(f64::MIN_POSITIVE);
             let scaled: Vec<DVec3> = positions.iter().map(|p| (*p - low) / size).collect();
+            // Rest positions count from the box's corner, bind positions from the origin.
+            let origin = if of_bind_pose { DVec3::ZERO } else { -surface.corner / surface.size };
             let planes = [0, 2].map(|axis| {
                 let extent = high[axis] - low[axis];
-                [-low[axis], extent / 2.0].map(|offset| (axis, offset / size))
+                [origin[axis] - low[axis], extent / 2.0].map(|offset| (axis, offset / size))
             });
             for (axis, middle) in planes.into_iter().flatten() {
                 let found = Self::at(&scaled, axis, middle, of_bind_pose);
@@ -55,6 +57,8 @@ impl Symmetry {
                 // A later plane must be clearly better: the rest pose and x come first.
                 if best.as_ref().is_none_or(|b| matched > b.mirror.map_or(0.0, |m| m.matched) + 0.02) {
                     let offset = low[axis] + middle * size;
+                    let of_model = surface.corner[axis] + offset * surface.size;
+                    let offset = if of_bind_pose { offset } else { of_model };
                     best = Some(Self { mirror: found.mirror.map(|m| Mirror { offset, ..m }), ..found });
                 }
             }

@@ -62,7 +62,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     let symmetry = Symmetry::new(&surface);
     let mut skeleton = Skeleton::new(model, &surface);
     anatomy::classify(&mut skeleton, &surface, &symmetry);
-    let mut field = field::measure(&surface, &skeleton);
+    let mut field = field::measure(&surface, &skeleton, &symmetry);
     symmetry.average(&mut field.soft);
     let pieces = smooth::pieces(&surface);
     let mut soft = field.soft.clone();
@@ -78,6 +78,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     symmetry.average(&mut soft);
     leave_springs(model, &surface, &mut soft, &mut notes);
     regions.split_limbs(&surface, &field, recipe, &soft);
+    regions.drop_unused();
     let was_painted = painted.iter().flatten().count();
     if was_painted > 0 {
         notes.push(format!("{was_painted} points have painted softness"));
@@ -104,11 +105,7 @@ fn apply_softness(recipe: &Recipe, shares: &[Vec<f64>], soft: &mut [f64], notes:
     for (n, (rule, shares)) in recipe.rules.iter().zip(shares).enumerate() {
         if shares.iter().all(|s| *s <= 0.0) {
             let joints = rule.joints.join(", ");
-            notes.push(format!(
-                "{}: rule {}: no joint that moves skin is named {joints}",
-                recipe.file,
-                n + 1
-            ));
+            notes.push(format!("{}: rule {}: no joint that moves skin is named {joints}", recipe.file, n + 1));
         }
         for (soft, share) in soft.iter_mut().zip(shares) {
             let wanted = *soft * rule.multiply.map_or(1.0, f64::from);

@@ -1,22 +1,25 @@
-//! Ears, horns and tufts that have no joint of their own: parts of the head that stick out far and thin.
+//! Ears, horns and tufts, with joints of their own or without: parts of the head that stick out far and thin.
 //!
-//! The way along the surface from the neck has a peak at each tip. Sweeping it downwards, the surface above the
-//! level falls into islands; an island that is long for its area when it meets another one is a protrusion.
+//! The way along the surface from the skull (what is near the middle of the head) has a peak at each tip. Sweeping it
+//! downwards, the surface above the level falls into islands; an island that is long for its area when it meets
+//! another one is a protrusion.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
+use super::mirror::Symmetry;
 use super::surface::Surface;
 
 /// Shortest protrusion, body sizes.
-const SHORTEST: f64 = 0.045;
-/// Smallest ratio of length to width.
-const ELONGATED: f64 = 1.25;
-/// An island ends where it is this many times as wide as before.
-const FLARE: f64 = 2.0;
-/// Steps in which width is measured.
+const SHORTEST: f64 = 0.034;
+/// Smallest ratio of length to width: of one with a twin, as ears have; of one in the middle, as noses are.
+const ELONGATED: (f64, f64) = (1.25, 2.5);
+/// The skull reaches this far from its middle, times the median of the head's points. A small one shows ears to their
+/// base, a large one keeps the ears of a coarse mesh apart; the smallest that shows an ear decides.
+const SKULLS: [f64; 5] = [0.6, 0.75, 0.9, 1.05, 1.2];
+/// Steps in which an island is cut shorter until it is thin.
 const STEPS: usize = 24;
 
 /// A part that sticks out.
@@ -26,6 +29,8 @@ pub(super) struct Protrusion {
     pub(super) points: Vec<(usize, f64)>,
     /// Base to tip, body sizes.
     pub(super) length: f64,
+    /// Has a twin on the other side.
+    pub(super) paired: bool,
 }
 
 /// Points and how far they are; nearest first in a heap.
@@ -75,37 +80,68 @@ struct Island {
 }
 
 /// Finds what sticks out of the points marked in `head`.
-pub(super) fn find(surface: &Surface, head: &[bool]) -> Vec<Protrusion> {
-    let start: Vec<f64> = head.iter().map(|h| if *h { f64::INFINITY } else { 0.0 }).collect();
-    let way = ways(&surface.links, &start, |i| head[i]);
-    let mut order: Vec<usize> = (0..head.len()).filter(|i| head[*i] && way[*i].is_finite()).collect();
-    order.sort_by(|a, b| way[*b].total_cmp(&way[*a]).then(a.cmp(b)));
-    let sweep = Sweep { surface, way: &way, shape: Shape::new(surface, &order) };
-    sweep.run(&order)
+pub(super) fn find(surface: &Surface, symmetry: &Symmetry, head: &[bool]) -> Vec<Protrusion> {
+    let inside: Vec<usize> = (0..head.len()).filter(|i| head[*i]).collect();
+    let shape = Shape::new(surface, &inside);
+    let mut taken = vec![false; head.len()];
+    let mut found: Vec<Protrusion> = Vec::new();
+    for reach in SKULLS {
+        let skull = |i: usize| !head[i] || shape.place(surface.points[i]) < reach * shape.typical;
+        let start: Vec<f64> = (0..head.len()).map(|i| if skull(i) { 0.0 } else { f64::INFINITY }).collect();
+        let way = ways(&surface.links, &start, |i| head[i]);
+        let out = |i: &usize| way[*i].is_finite() && way[*i] > 0.0;
+        let mut order: Vec<usize> = inside.iter().copied().filter(out).collect();
+        order.sort_by(|a, b| way[*b].total_cmp(&way[*a]).then(a.cmp(b)));
+        for protrusion in (Sweep { surface, symmetry, way: &way, shape: &shape }).run(&order) {
+            if protrusion.points.iter().all(|(i, _)| !taken[*i]) {
+                protrusion.points.iter().for_each(|(i, _)| taken[*i] = true);
+                found.push(protrusion);
+            }
+        }
+    }
+    found
 }
 
-/// Middle, radius and area of the head.
+/// An ellipsoid like the head, and the head's area; by quantiles over the area, which long ears do not shift.
 struct Shape {
     middle: DVec3,
-    radius: f64,
+    half: DVec3,
+    typical: f64,
     area: f64,
 }
 
 impl Shape {
     fn new(surface: &Surface, points: &[usize]) -> Self {
         let area: f64 = points.iter().map(|i| surface.area[*i]).sum();
-        let mean = |of: &dyn Fn(usize) -> f64| {
-            points.iter().map(|i| of(*i) * surface.area[*i]).sum::<f64>() / area.max(1e-12)
+        let quantile = |share: f64, of: &dyn Fn(usize) -> f64| {
+            let mut values: Vec<(f64, f64)> = points.iter().map(|i| (of(*i), surface.area[*i])).collect();
+            values.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut left = area * share;
+            let reached = values.iter().find(|(_, area)| {
+                left -= area;
+                left <= 0.0
+            });
+            reached.map_or(0.0, |(value, _)| *value)
         };
-        let middle = DVec3::from_array([0, 1, 2].map(|axis| mean(&|i| surface.points[i][axis])));
-        Self { middle, radius: mean(&|i| surface.points[i].distance(middle)), area }
+        let along = |share: f64| DVec3::from_array([0, 1, 2].map(|a| quantile(share, &|i| surface.points[i][a])));
+        let (low, high) = (along(0.25), along(0.75));
+        let half = ((high - low) / 2.0).max(DVec3::splat(1e-6));
+        let mut shape = Self { middle: (low + high) / 2.0, half, typical: 0.0, area };
+        shape.typical = quantile(0.5, &|i| shape.place(surface.points[i]));
+        shape
+    }
+
+    /// Distance from the middle in half axes.
+    fn place(&self, p: DVec3) -> f64 {
+        ((p - self.middle) / self.half).length()
     }
 }
 
 struct Sweep<'a> {
     surface: &'a Surface,
+    symmetry: &'a Symmetry,
     way: &'a [f64],
-    shape: Shape,
+    shape: &'a Shape,
 }
 
 impl Sweep<'_> {
@@ -115,11 +151,8 @@ impl Sweep<'_> {
         let mut found = Vec::new();
         for &i in order {
             let level = self.way[i];
-            let mut near: Vec<usize> = self.surface.links[i]
-                .iter()
-                .map(|(j, _)| island_of[*j])
-                .filter(|n| *n != usize::MAX)
-                .collect();
+            let mut near: Vec<usize> =
+                self.surface.links[i].iter().map(|(j, _)| island_of[*j]).filter(|n| *n != usize::MAX).collect();
             near.sort_by(|a, b| islands[*b].peak.total_cmp(&islands[*a].peak).then(a.cmp(b)));
             near.dedup();
             let Some((&home, others)) = near.split_first() else {
@@ -150,7 +183,7 @@ impl Sweep<'_> {
         found
     }
 
-    /// The island down to `level`, or to where it flares out before, if it is long, thin and sticks out.
+    /// The island down to `level`, or as far down as it is thin, if that is long enough.
     fn measure(&self, island: &Island, level: f64) -> Option<Protrusion> {
         let height = island.peak - level;
         if height < SHORTEST {
@@ -160,30 +193,24 @@ impl Sweep<'_> {
         let step = height / STEPS as f64;
         let mut area = [0.0; STEPS];
         for i in &island.points {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "clamped to the steps"
-            )]
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the steps")]
             let slot = ((island.peak - self.way[*i]) / step).clamp(0.0, STEPS as f64 - 1.0) as usize;
             area[slot] += self.surface.area[*i];
         }
-        let flare = |k: &usize| {
-            let above = area[1..*k].iter().sum::<f64>();
+        let aside = |i: &&usize| self.symmetry.centered[**i][self.symmetry.axis].abs() > 0.01;
+        let paired = 10 * island.points.iter().filter(aside).count() > 9 * island.points.len();
+        let least = if paired { ELONGATED.0 } else { ELONGATED.1 };
+        let ends = (1..=STEPS).rev().map(|end| {
             #[expect(clippy::cast_precision_loss, reason = "a small count")]
-            let mean = above / (*k - 1) as f64;
-            (area[*k] + area[(*k + 1).min(STEPS - 1)]) / 2.0 > FLARE * mean
-        };
-        let end = (8..STEPS).find(flare).unwrap_or(STEPS);
-        #[expect(clippy::cast_precision_loss, reason = "a small count")]
-        let length = step * end as f64;
-        let covered: f64 = area[..end].iter().sum();
-        let tip = island.points.first().map(|i| self.surface.points[*i])?;
-        let sticks_out = tip.distance(self.shape.middle) > 1.3 * self.shape.radius;
-        let thin = 2.0 * length * length > ELONGATED * covered && covered < 0.35 * self.shape.area;
+            let length = step * end as f64;
+            (length, area[..end].iter().sum::<f64>())
+        });
+        // A strip of this length and area (both sides) has the width area / (2 length).
+        let thin = |(length, area): &(f64, f64)| *area > 0.0 && 2.0 * length * length > least * area;
+        let (length, area) = ends.into_iter().find(thin)?;
         let base = island.peak - length;
         let place = |i: &usize| (*i, ((self.way[*i] - base) / length).clamp(0.0, 1.0));
-        let points = island.points.iter().filter(|i| self.way[**i] > base).map(place).collect();
-        (sticks_out && thin && length >= SHORTEST && covered > 0.0).then_some(Protrusion { points, length })
+        let points: Vec<(usize, f64)> = island.points.iter().filter(|i| self.way[**i] > base).map(place).collect();
+        (length >= SHORTEST && points.len() > 2 && area < 0.35 * self.shape.area).then_some(Protrusion { points, length, paired })
     }
 }

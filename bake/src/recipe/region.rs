@@ -48,7 +48,7 @@ impl Regions {
         let chains: Vec<usize> =
             skeleton.chains.iter().map(|c| number(if c.ear { "ear" } else { "tail" }, c.length)).collect();
         let protrusions: Vec<usize> = (0..field.protrusions.len())
-            .map(|k| number(protrusion_name(field, symmetry, k), field.protrusions[k].length))
+            .map(|k| number(if field.protrusions[k].paired { "ear" } else { "crest" }, field.protrusions[k].length))
             .collect();
         let of = field.label.iter().map(|label| match label {
             Label::Body => 0,
@@ -58,7 +58,7 @@ impl Regions {
         #[expect(clippy::cast_possible_truncation, reason = "at most four kinds of region")]
         let mut of: Vec<u8> = of.map(|n| n as u8).collect();
         for (i, j) in symmetry.partner.iter().enumerate() {
-            of[i] = of[i].min(of[*j]);
+            of[i] = of[i].max(of[*j]);
         }
         for piece in pieces {
             let region = piece.decided_by.first().map_or(0, |i| of[*i]);
@@ -78,8 +78,7 @@ impl Regions {
             region.gain *= recipe.gain;
             region.max_offset *= recipe.max_offset;
         }
-        for (n, (rule, share)) in recipe.rules.iter().zip(shares).enumerate().filter(|(_, (r, _))| r.tunes())
-        {
+        for (n, (rule, share)) in recipe.rules.iter().zip(shares).enumerate().filter(|(_, (r, _))| r.tunes()) {
             let Some(first) = share.iter().position(|s| *s > 0.5) else { continue };
             let name = rule.region.clone().unwrap_or_else(|| format!("rule {}", n + 1));
             let automatic = self.list[usize::from(self.of[first])].clone();
@@ -111,11 +110,11 @@ impl Regions {
         let mut limb = vec![0.0; count];
         let mut all = vec![0.0; count];
         for (i, n) in island.iter().enumerate() {
-            limb[*n] += field.limb[i] * surface.area[i];
-            all[*n] += surface.area[i];
+            limb[*n] += field.limb[i] * surface.area[i] * soft[i];
+            all[*n] += surface.area[i] * soft[i];
         }
         let on_limb: Vec<usize> =
-            (0..soft.len()).filter(|i| inside(*i) && limb[island[*i]] > 0.6 * all[island[*i]]).collect();
+            (0..soft.len()).filter(|i| inside(*i) && limb[island[*i]] > 0.95 * all[island[*i]]).collect();
         if on_limb.is_empty() || self.list.len() > 15 {
             return;
         }
@@ -134,6 +133,23 @@ impl Regions {
     }
 }
 
+impl Regions {
+    /// Drops regions without points; the body's stays.
+    pub(super) fn drop_unused(&mut self) {
+        let mut number = vec![0; self.list.len()];
+        let mut kept = Vec::new();
+        for (at, region) in self.list.drain(..).enumerate() {
+            number[at] = kept.len();
+            if at == 0 || self.of.iter().any(|r| usize::from(*r) == at) {
+                kept.push(region);
+            }
+        }
+        self.list = kept;
+        #[expect(clippy::cast_possible_truncation, reason = "at most 16 regions")]
+        self.of.iter_mut().for_each(|r| *r = number[usize::from(*r)] as u8);
+    }
+}
+
 /// Points that a recipe's rules are about, rule by rule: share of each point.
 pub(super) fn shares(model: &Model, surface: &Surface, recipe: &Recipe) -> Vec<Vec<f64>> {
     let of_rule = |rule: &super::rules::Rule| {
@@ -142,16 +158,6 @@ pub(super) fn shares(model: &Model, surface: &Surface, recipe: &Recipe) -> Vec<V
         surface.weights.iter().map(held).collect()
     };
     recipe.rules.iter().map(of_rule).collect()
-}
-
-/// `ear` if it has a twin on the other side, else `crest`.
-fn protrusion_name(field: &Field, symmetry: &Symmetry, k: usize) -> &'static str {
-    let twin = |(i, _): &(usize, f64)| match field.label[symmetry.partner[*i]] {
-        Label::Protrusion(other) => other != k,
-        _ => false,
-    };
-    let twins = field.protrusions[k].points.iter().filter(|p| twin(p)).count();
-    if 2 * twins > field.protrusions[k].points.len() { "ear" } else { "crest" }
 }
 
 /// The trunk's flesh: the deeper the slower.

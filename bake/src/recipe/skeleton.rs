@@ -16,7 +16,7 @@ pub(super) enum Part {
     Limb,
     /// Head, feet, jaw, eyes.
     Rigid,
-    /// Tail, ear, tuft: soft towards the tip; index into [`Skeleton::chains`].
+    /// Tail, ear: soft towards the tip; index into [`Skeleton::chains`].
     Chain(usize),
     /// A control inside the flesh (belly, breast): belongs to the bone above.
     Flesh,
@@ -39,6 +39,8 @@ pub(super) struct Bone {
     pub(super) along: f64,
     /// Where the bone points to: its heaviest child, or the farthest skin of a last joint.
     pub(super) tip: DVec3,
+    /// The pelvis: the first joint that legs are attached to.
+    pub(super) seat: bool,
     /// Joints from the top of the skeleton.
     pub(super) depth: usize,
 }
@@ -46,12 +48,10 @@ pub(super) struct Bone {
 /// An appendage moved by joints of its own.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chain {
-    /// First bone.
-    pub(super) root: usize,
-    /// Hangs on the head and has a twin.
-    pub(super) ear: bool,
     /// Longest way along the chain to its skin, body sizes.
     pub(super) length: f64,
+    /// Hangs on the head and has a twin.
+    pub(super) ear: bool,
 }
 
 /// Bones, parents before children.
@@ -63,6 +63,10 @@ pub(super) struct Skeleton {
     pub(super) bone_of: BTreeMap<usize, usize>,
     /// Length of the limb of each limb bone.
     pub(super) limb_length: BTreeMap<usize, f64>,
+    /// Bones of the head that carry the skull.
+    pub(super) skull: Vec<usize>,
+    /// Where the character looks: the sign of z.
+    pub(super) front: f64,
 }
 
 impl Skeleton {
@@ -74,7 +78,6 @@ impl Skeleton {
         order.sort_by_key(|n| (depth[*n], *n));
         let kept = kept_nodes(model, &own, &order);
         let rest = model.rest_transforms();
-        let scale = Scale::new(model, surface);
         let mut skeleton = Self::default();
         for node in order.into_iter().filter(|n| kept[*n]) {
             let mut above = model.nodes[node].parent;
@@ -87,7 +90,7 @@ impl Skeleton {
             if let Some(p) = parent {
                 skeleton.bones[p].children.push(index);
             }
-            let position = scale.point(rest[node].w_axis.truncate());
+            let position = (rest[node].w_axis.truncate() - surface.corner) / surface.size;
             skeleton.bone_of.insert(node, index);
             skeleton.bones.push(Bone {
                 node,
@@ -99,6 +102,7 @@ impl Skeleton {
                 below: own[node],
                 along: 0.0,
                 tip: position,
+                seat: false,
                 depth,
             });
         }
@@ -109,6 +113,12 @@ impl Skeleton {
         }
         skeleton.set_tips(surface);
         skeleton
+    }
+
+    /// Distance of a joint from the one above, 0 at the top.
+    pub(super) fn start(&self, bone: usize) -> f64 {
+        let above = self.bones[bone].parent.unwrap_or(bone);
+        self.bones[above].position.distance(self.bones[bone].position)
     }
 
     /// A bone and all below it, in order.
@@ -144,8 +154,7 @@ impl Skeleton {
         let inside = self.subtree(root);
         for &b in &inside {
             let parent = self.bones[b].parent.filter(|_| b != root);
-            let way =
-                parent.map(|p| self.bones[p].along + self.bones[p].position.distance(self.bones[b].position));
+            let way = parent.map(|p| self.bones[p].along + self.bones[p].position.distance(self.bones[b].position));
             self.bones[b].along = way.unwrap_or(base);
         }
         let mut longest = base;
@@ -169,30 +178,11 @@ impl Skeleton {
             }
         }
         for b in 0..self.bones.len() {
-            let heaviest = self.bones[b]
-                .children
-                .iter()
-                .max_by(|x, y| self.bones[**x].below.total_cmp(&self.bones[**y].below).then(y.cmp(x)));
+            let heaviest = self.bones[b].children.iter().max_by(|x, y| {
+                self.bones[**x].below.total_cmp(&self.bones[**y].below).then(y.cmp(x))
+            });
             self.bones[b].tip = heaviest.map_or(farthest[b].1, |c| self.bones[*c].position);
         }
-    }
-}
-
-/// Model units to body sizes, as the surface does it.
-struct Scale {
-    corner: DVec3,
-    size: f64,
-}
-
-impl Scale {
-    fn new(model: &Model, surface: &Surface) -> Self {
-        let first = model.rest_positions().first().copied().unwrap_or_default();
-        let point = surface.point_of.first().map_or(DVec3::ZERO, |p| surface.points[*p]);
-        Self { corner: first - point * surface.size, size: surface.size }
-    }
-
-    fn point(&self, p: DVec3) -> DVec3 {
-        (p - self.corner) / self.size
     }
 }
 

@@ -9,31 +9,24 @@ const EVEN: f64 = 0.014;
 /// Passes of the solver.
 const PASSES: usize = 80;
 /// What is below this after smoothing is rigid.
-const FLOOR: f64 = 0.03;
+const FLOOR: f64 = 0.04;
 /// Steepest change of softness per body size.
 const STEEPEST: f64 = 25.0;
 /// Shells with a box smaller than this (body sizes) move as a piece.
-const PIECE: f64 = 0.06;
+const PIECE: f64 = 0.08;
 /// Beside a border between regions softness is taken to 0 over this length, body sizes.
 const BORDER: f64 = 0.02;
 
-/// Evens out: minimizes `Σ aᵢ (sᵢ − rᵢ)² + EVEN² Σ aᵢⱼ ((sᵢ − sⱼ) / lᵢⱼ)²`, area `a`, length `l`.
+/// Evens out: minimizes `Σ aᵢ (sᵢ − rᵢ)² + EVEN² Σ aᵢⱼ ((sᵢ − sⱼ) / lᵢⱼ)²`, area `a` (the smaller of two), length `l`.
 pub(super) fn even(surface: &Surface, soft: &mut [f64]) {
     let raw = soft.to_vec();
     let mass: Vec<f64> = surface.area.iter().map(|a| a + 1e-9).collect();
-    let pulls: Vec<Vec<(usize, f64)>> = surface
-        .links
-        .iter()
-        .enumerate()
-        .map(|(i, row)| {
-            row.iter()
-                .map(|(j, length)| {
-                    let length = length.max(1e-3);
-                    (*j, EVEN * EVEN * (mass[i] + mass[*j]) / (2.0 * length * length))
-                })
-                .collect()
-        })
-        .collect();
+    let pulls: Vec<Vec<(usize, f64)>> = surface.links.iter().enumerate().map(|(i, row)| {
+        row.iter().map(|(j, length)| {
+            let length = length.max(1e-3);
+            (*j, EVEN * EVEN * mass[i].min(mass[*j]) / (length * length))
+        }).collect()
+    }).collect();
     for _ in 0..PASSES {
         for i in 0..soft.len() {
             let (mut sum, mut weight) = (mass[i] * raw[i], mass[i]);
@@ -97,10 +90,14 @@ pub(super) fn limit_slope(surface: &Surface, soft: &mut [f64]) {
     soft.iter_mut().zip(limited).for_each(|(s, l)| *s = (l * STEEPEST).min(*s));
 }
 
-/// Takes softness to 0 towards borders between regions, so that nothing tears there.
+/// Takes softness to 0 towards borders between regions, so that nothing tears there: the harder side of a border
+/// where both sides are soft becomes rigid.
 pub(super) fn fade_borders<T: PartialEq>(surface: &Surface, region: &[T], soft: &mut [f64]) {
-    let border = |i: usize| surface.links[i].iter().any(|(j, _)| region[*j] != region[i]);
-    let start: Vec<f64> = (0..soft.len()).map(|i| if border(i) { 0.0 } else { f64::INFINITY }).collect();
+    let torn = |i: usize| {
+        let other = surface.links[i].iter().filter(|(j, _)| region[*j] != region[i]);
+        soft[i] > 0.0 && other.into_iter().any(|(j, _)| soft[*j] >= soft[i])
+    };
+    let start: Vec<f64> = (0..soft.len()).map(|i| if torn(i) { 0.0 } else { f64::INFINITY }).collect();
     let way = ways(&surface.links, &start, |_| true);
     soft.iter_mut().zip(way).for_each(|(s, way)| *s *= ease(0.0, BORDER, way));
 }

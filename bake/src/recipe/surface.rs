@@ -17,6 +17,8 @@ const BRIDGE: f64 = 0.015;
 pub(super) struct Surface {
     /// Body size in model units: diagonal of the box around all triangles.
     pub(super) size: f64,
+    /// Where that box has its smallest coordinates, model units.
+    pub(super) corner: DVec3,
     /// Point of each render vertex.
     pub(super) point_of: Vec<usize>,
     /// Rest positions; the box's corner with the smallest coordinates is the origin.
@@ -66,6 +68,7 @@ impl Surface {
         let triangles = triangles(model, &point_of);
         let mut surface = Self {
             size,
+            corner: low,
             bind: first.iter().map(|v| bind[*v]).collect(),
             weights: weights(model, &point_of, points.len()),
             area: areas(&points, &triangles),
