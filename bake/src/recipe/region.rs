@@ -48,7 +48,9 @@ impl Regions {
         let chains: Vec<usize> =
             skeleton.chains.iter().map(|c| number(if c.ear { "ear" } else { "tail" }, c.length)).collect();
         let protrusions: Vec<usize> = (0..field.protrusions.len())
-            .map(|k| number(if field.protrusions[k].paired { "ear" } else { "crest" }, field.protrusions[k].length))
+            .map(|k| {
+                number(if field.protrusions[k].paired { "ear" } else { "crest" }, field.protrusions[k].length)
+            })
             .collect();
         let of = field.label.iter().map(|label| match label {
             Label::Body => 0,
@@ -78,7 +80,8 @@ impl Regions {
             region.gain *= recipe.gain;
             region.max_offset *= recipe.max_offset;
         }
-        for (n, (rule, share)) in recipe.rules.iter().zip(shares).enumerate().filter(|(_, (r, _))| r.tunes()) {
+        for (n, (rule, share)) in recipe.rules.iter().zip(shares).enumerate().filter(|(_, (r, _))| r.tunes())
+        {
             let Some(first) = share.iter().position(|s| *s > 0.5) else { continue };
             let name = rule.region.clone().unwrap_or_else(|| format!("rule {}", n + 1));
             let automatic = self.list[usize::from(self.of[first])].clone();
