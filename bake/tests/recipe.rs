@@ -344,3 +344,25 @@ fn degenerate_models_are_refused_or_finite() {
         assert!(flesh.body_size < 10.0, "a vertex without triangle does not count for the size");
     }
 }
+
+#[test]
+fn clothes_and_eyes_move_with_the_skin_beneath() {
+    let Some(model) = character("makehuman/mh_f_heavy.glb") else { return };
+    let flesh = auto(&model);
+    let places = places(&model, &flesh);
+    let counts: Vec<usize> = model.primitives.iter().map(|p| p.positions.len()).collect();
+    let body = (0..counts.len()).max_by_key(|p| counts[*p]).expect("a body");
+    let start: usize = counts[..body].iter().sum();
+    let skin = start..start + counts[body];
+    let (mut worst, mut worn) = (0.0_f32, 0);
+    for (_, (p, soft)) in places.iter().enumerate().filter(|(v, _)| !skin.contains(v)) {
+        let beneath = places[skin.clone()].iter().map(|(q, s)| (p.distance_squared(*q), *s));
+        let (distance, under) = beneath.min_by(|a, b| a.0.total_cmp(&b.0)).expect("skin");
+        if distance < 0.01 * 0.01 {
+            worst = worst.max((soft - under).abs());
+            worn += 1;
+        }
+    }
+    assert!(worn > 1000, "only {worn} vertices of clothes");
+    assert!(worst < 0.1, "softness differs by {worst} from the skin beneath");
+}
