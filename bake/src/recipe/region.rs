@@ -163,9 +163,11 @@ pub(super) fn shares(model: &Model, surface: &Surface, recipe: &Recipe) -> Vec<V
     recipe.rules.iter().map(of_rule).collect()
 }
 
-/// The trunk's flesh: the deeper the slower.
+/// The trunk's flesh: the deeper the slower; lean bodies swing less.
 fn flesh(depth: f64) -> Region {
-    region("flesh", (3.0 - 6.0 * depth).clamp(1.8, 2.8), 0.28, 0.3 * depth)
+    #[expect(clippy::cast_possible_truncation, reason = "parameters are f32")]
+    let gain = (depth / 0.11).clamp(0.4, 1.0) as f32;
+    Region { gain, ..region("flesh", (3.0 - 6.0 * depth).clamp(1.8, 2.8), 0.28, 0.3 * depth) }
 }
 
 /// Something that sticks out: the longer the slower.
