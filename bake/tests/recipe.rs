@@ -14,7 +14,7 @@ fn character(file: &str) -> Option<Model> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data")).join(file);
     if !path.exists() {
         assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", path.display());
-        println!("skipped: {} is missing", path.display());
+        eprintln!("skipped: {} is missing", path.display());
         return None;
     }
     Some(import(&path).expect("the file is a character"))
@@ -134,7 +134,10 @@ fn all_characters_are_finite_and_do_not_tear() {
     for file in CHARACTERS {
         let Some(model) = character(file) else { continue };
         let flesh = auto(&model);
-        assert!(flesh.softness.len() == model.vertex_count() && flesh.region.len() == model.vertex_count(), "{file}");
+        assert!(
+            flesh.softness.len() == model.vertex_count() && flesh.region.len() == model.vertex_count(),
+            "{file}"
+        );
         assert!(flesh.softness.iter().all(|s| (0.0..=1.0).contains(s)), "{file}: softness out of 0..=1");
         assert!(flesh.regions.len() <= 16, "{file}");
         assert!(flesh.region.iter().all(|r| usize::from(*r) < flesh.regions.len()), "{file}");
@@ -158,7 +161,8 @@ fn all_characters_are_finite_and_do_not_tear() {
 
 #[test]
 fn symmetric_characters_have_symmetric_flesh() {
-    let symmetric = ["big-buck-bunny/bunny.glb", "khronos/Fox.glb", "mesh2motion/horse.glb", "khronos/CesiumMan.glb"];
+    let symmetric =
+        ["big-buck-bunny/bunny.glb", "khronos/Fox.glb", "mesh2motion/horse.glb", "khronos/CesiumMan.glb"];
     for file in symmetric {
         let Some(model) = character(file) else { continue };
         let flesh = auto(&model);
@@ -211,14 +215,17 @@ fn paint_overrides_and_is_checked() {
     }
     let flesh = auto(&model);
     for (p, soft) in rest.iter().zip(&flesh.softness) {
-        assert!((f64::from(*soft) - (p.y / top).clamp(0.0, 1.0)).abs() < 1e-4, "painted softness is used as it is");
+        assert!(
+            (f64::from(*soft) - (p.y / top).clamp(0.0, 1.0)).abs() < 1e-4,
+            "painted softness is used as it is"
+        );
     }
     model.primitives[0].painted.as_mut().expect("painted")[3] = f32::NAN;
-    let error = super_error(&model);
+    let error = refusal(&model);
     assert!(error.contains("vertex 3, _SINEW"), "{error}");
 }
 
-fn super_error(model: &Model) -> String {
+fn refusal(model: &Model) -> String {
     flesh(model, &Recipe::default()).expect_err("the model is not usable").to_string()
 }
 
@@ -239,7 +246,11 @@ fn rules_override() {
     assert_eq!(ruled.regions[brush].damping.to_bits(), tail.damping.to_bits(), "what is not given stays");
     let used = ruled.region.iter().filter(|r| usize::from(**r) == brush).count();
     assert!(used > 100, "{used} vertices in the region");
-    assert!(ruled.notes.iter().any(|n| n.contains("fox.toml: rule 3") && n.contains("wing")), "{:?}", ruled.notes);
+    assert!(
+        ruled.notes.iter().any(|n| n.contains("fox.toml: rule 3") && n.contains("wing")),
+        "{:?}",
+        ruled.notes
+    );
 }
 
 #[test]
@@ -302,17 +313,23 @@ fn toy(positions: &[[f32; 3]], indices: &[[u32; 3]]) -> Model {
         indices: indices.to_vec(),
         ..Primitive::default()
     };
-    Model { name: String::from("toy"), nodes: vec![node], joints: vec![joint], primitives: vec![primitive], ..Model::default() }
+    Model {
+        name: String::from("toy"),
+        nodes: vec![node],
+        joints: vec![joint],
+        primitives: vec![primitive],
+        ..Model::default()
+    }
 }
 
 #[test]
 fn degenerate_models_are_refused_or_finite() {
     let point = toy(&[[1.0; 3]; 3], &[[0, 1, 2]]);
-    let error = super_error(&point);
+    let error = refusal(&point);
     assert!(error.contains("toy") && error.contains("no size"), "{error}");
-    assert!(super_error(&Model::default()).contains("no size"), "a model without vertices");
+    assert!(refusal(&Model::default()).contains("no size"), "a model without vertices");
     let infinite = toy(&[[0.0; 3], [f32::INFINITY, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
-    assert!(super_error(&infinite).contains("vertex 1"), "a position that is not finite");
+    assert!(refusal(&infinite).contains("vertex 1"), "a position that is not finite");
 
     let flat = toy(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 3.0, 0.0], [1.0, 3.0, 0.0]], &[[0, 1, 2], [1, 3, 2]]);
     let islands = toy(
@@ -320,9 +337,32 @@ fn degenerate_models_are_refused_or_finite() {
         &[[0, 1, 2], [3, 4, 5]],
     );
     let stray = toy(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [50.0; 3]], &[[0, 1, 2]]);
-    for model in [flat, islands, stray] {
+    let far = toy(&[[0.0; 3], [1e-30, 0.0, 0.0], [0.0, 1e-30, 0.0], [f32::MAX; 3]], &[[0, 1, 2]]);
+    for model in [flat, islands, stray, far] {
         let flesh = auto(&model);
         assert!(flesh.softness.iter().all(|s| (0.0..=1.0).contains(s)), "{:?}", flesh.softness);
         assert!(flesh.body_size < 10.0, "a vertex without triangle does not count for the size");
     }
+}
+
+#[test]
+fn clothes_and_eyes_move_with_the_skin_beneath() {
+    let Some(model) = character("makehuman/mh_f_heavy.glb") else { return };
+    let flesh = auto(&model);
+    let places = places(&model, &flesh);
+    let counts: Vec<usize> = model.primitives.iter().map(|p| p.positions.len()).collect();
+    let body = (0..counts.len()).max_by_key(|p| counts[*p]).expect("a body");
+    let start: usize = counts[..body].iter().sum();
+    let skin = start..start + counts[body];
+    let (mut worst, mut worn) = (0.0_f32, 0);
+    for (_, (p, soft)) in places.iter().enumerate().filter(|(v, _)| !skin.contains(v)) {
+        let beneath = places[skin.clone()].iter().map(|(q, s)| (p.distance_squared(*q), *s));
+        let (distance, under) = beneath.min_by(|a, b| a.0.total_cmp(&b.0)).expect("skin");
+        if distance < 0.01 * 0.01 {
+            worst = worst.max((soft - under).abs());
+            worn += 1;
+        }
+    }
+    assert!(worn > 1000, "only {worn} vertices of clothes");
+    assert!(worst < 0.1, "softness differs by {worst} from the skin beneath");
 }

@@ -60,7 +60,8 @@ impl Branch {
 pub(super) fn classify(skeleton: &mut Skeleton, surface: &Surface, symmetry: &Symmetry) {
     skeleton.front = front(surface);
     let branches = survey(skeleton, surface, symmetry);
-    let tops: Vec<usize> = (0..skeleton.bones.len()).filter(|b| skeleton.bones[*b].parent.is_none()).collect();
+    let tops: Vec<usize> =
+        (0..skeleton.bones.len()).filter(|b| skeleton.bones[*b].parent.is_none()).collect();
     let heaviest = |x: &&usize, y: &&usize| {
         skeleton.bones[**x].below.total_cmp(&skeleton.bones[**y].below).then(y.cmp(x))
     };
@@ -206,7 +207,8 @@ fn set_chain(skeleton: &mut Skeleton, surface: &Surface, root: usize, ear: bool)
 fn front(surface: &Surface) -> f64 {
     let height = surface.points.iter().map(|p| p.y).fold(f64::MIN_POSITIVE, f64::max);
     let mean = |from: f64, to: f64| {
-        let slice = surface.points.iter().zip(&surface.area).filter(|(p, _)| (from..to).contains(&(p.y / height)));
+        let slice =
+            surface.points.iter().zip(&surface.area).filter(|(p, _)| (from..to).contains(&(p.y / height)));
         let (sum, area) = slice.fold((0.0, 1e-12), |(sum, all), (p, area)| (sum + p.z * area, all + area));
         sum / area
     };
@@ -231,7 +233,9 @@ fn survey(skeleton: &Skeleton, surface: &Surface, symmetry: &Symmetry) -> Vec<Br
             let alike = other.area > 0.6 * branches[b].area && branches[b].area > 0.6 * other.area;
             let joint = symmetry.mirrored(skeleton.bones[b].tip - skeleton.bones[b].position);
             let turned = joint.distance(skeleton.bones[*s].tip - skeleton.bones[*s].position) < 0.03;
-            *s != b && (alike && image.distance(other.middle) < 0.03 || turned && image.distance(other.middle) < 0.06)
+            *s != b
+                && (alike && image.distance(other.middle) < 0.03
+                    || turned && image.distance(other.middle) < 0.06)
         });
         branches[b].paired = twin && branches[b].middle[symmetry.axis].abs() > 0.01;
     }

@@ -12,9 +12,9 @@ const SHALLOW: f64 = 0.3;
 /// Least depth that counts as deepest flesh, body sizes.
 const LEAST_DEPTH: f64 = 0.04;
 /// Along a limb (0 at the trunk, 1 at the fingertips) flesh hardens between these places.
-const LIMB: (f64, f64) = (0.3, 0.65);
+const LIMB: (f64, f64) = (0.3, 0.8);
 /// Softness of the back, share of the belly's; of the rump.
-const BACK: (f64, f64) = (0.3, 0.65);
+const BACK: (f64, f64) = (0.3, 0.8);
 
 /// What a point belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -174,9 +174,11 @@ impl<'a> Frame<'a> {
     /// Direction of the trunk at a bone: from the bone above to the one below.
     fn spine(&self, bone: usize) -> DVec3 {
         let bones = &self.skeleton.bones;
-        let below = bones[bone].children.iter().filter(|c| matches!(bones[**c].part, Part::Trunk | Part::Rigid));
+        let below =
+            bones[bone].children.iter().filter(|c| matches!(bones[**c].part, Part::Trunk | Part::Rigid));
         let next = below.max_by(|a, b| bones[**a].below.total_cmp(&bones[**b].below).then(b.cmp(a)));
-        let above = bones[bone].parent.map_or(bone, |p| if bones[p].own > 0.02 * bones[bone].own { p } else { bone });
+        let above =
+            bones[bone].parent.map_or(bone, |p| if bones[p].own > 0.02 * bones[bone].own { p } else { bone });
         (bones[next.copied().unwrap_or(bone)].position - bones[above].position).normalize_or_zero()
     }
 
@@ -188,7 +190,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Depth that a tenth of the trunk's skin exceeds.
+/// Depth that a tenth of the trunk's skin exceeds; backs count less, as for softness.
 fn deepest(surface: &Surface, frame: &Frame<'_>) -> f64 {
     let mut depths = Vec::new();
     for (i, p) in surface.points.iter().enumerate() {
@@ -196,7 +198,7 @@ fn deepest(surface: &Surface, frame: &Frame<'_>) -> f64 {
         let trunk = frame.bones(&surface.weights[i]).filter(|(b, _)| of_trunk(*b));
         let (depth, share) = trunk.fold((0.0, 0.0), |(d, s), (b, w)| (d + w * frame.distance(b, *p), s + w));
         if share > 0.5 {
-            depths.push((depth / share, surface.area[i]));
+            depths.push((depth / share * frame.side(*p), surface.area[i]));
         }
     }
     depths.sort_by(|a, b| a.0.total_cmp(&b.0));

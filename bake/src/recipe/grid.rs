@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+/// Cubes farther from the origin than this are one: strays of no interest.
+const FAR: f64 = 1e15;
+
 /// Points sorted into cubes of a given edge.
 #[derive(Debug)]
 pub(super) struct Grid {
@@ -31,8 +34,8 @@ impl Grid {
         })
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "coordinates are in body sizes, the edge at least 1e-6")]
+    #[expect(clippy::cast_possible_truncation, reason = "clamped")]
     fn cube(&self, p: DVec3) -> [i64; 3] {
-        (p / self.edge).floor().to_array().map(|c| c as i64)
+        (p / self.edge).floor().to_array().map(|c| c.clamp(-FAR, FAR) as i64)
     }
 }

@@ -63,6 +63,8 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     let mut skeleton = Skeleton::new(model, &surface);
     anatomy::classify(&mut skeleton, &surface, &symmetry);
     let mut field = field::measure(&surface, &skeleton, &symmetry);
+    // Strays so far away that their distances overflow are no flesh.
+    field.soft.iter_mut().filter(|s| !s.is_finite()).for_each(|s| *s = 0.0);
     symmetry.average(&mut field.soft);
     let pieces = smooth::pieces(&surface);
     let mut soft = field.soft.clone();
@@ -105,7 +107,11 @@ fn apply_softness(recipe: &Recipe, shares: &[Vec<f64>], soft: &mut [f64], notes:
     for (n, (rule, shares)) in recipe.rules.iter().zip(shares).enumerate() {
         if shares.iter().all(|s| *s <= 0.0) {
             let joints = rule.joints.join(", ");
-            notes.push(format!("{}: rule {}: no joint that moves skin is named {joints}", recipe.file, n + 1));
+            notes.push(format!(
+                "{}: rule {}: no joint that moves skin is named {joints}",
+                recipe.file,
+                n + 1
+            ));
         }
         for (soft, share) in soft.iter_mut().zip(shares) {
             let wanted = *soft * rule.multiply.map_or(1.0, f64::from);

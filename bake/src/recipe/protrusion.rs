@@ -123,7 +123,8 @@ impl Shape {
             });
             reached.map_or(0.0, |(value, _)| *value)
         };
-        let along = |share: f64| DVec3::from_array([0, 1, 2].map(|a| quantile(share, &|i| surface.points[i][a])));
+        let along =
+            |share: f64| DVec3::from_array([0, 1, 2].map(|a| quantile(share, &|i| surface.points[i][a])));
         let (low, high) = (along(0.25), along(0.75));
         let half = ((high - low) / 2.0).max(DVec3::splat(1e-6));
         let mut shape = Self { middle: (low + high) / 2.0, half, typical: 0.0, area };
@@ -151,8 +152,11 @@ impl Sweep<'_> {
         let mut found = Vec::new();
         for &i in order {
             let level = self.way[i];
-            let mut near: Vec<usize> =
-                self.surface.links[i].iter().map(|(j, _)| island_of[*j]).filter(|n| *n != usize::MAX).collect();
+            let mut near: Vec<usize> = self.surface.links[i]
+                .iter()
+                .map(|(j, _)| island_of[*j])
+                .filter(|n| *n != usize::MAX)
+                .collect();
             near.sort_by(|a, b| islands[*b].peak.total_cmp(&islands[*a].peak).then(a.cmp(b)));
             near.dedup();
             let Some((&home, others)) = near.split_first() else {
@@ -193,7 +197,11 @@ impl Sweep<'_> {
         let step = height / STEPS as f64;
         let mut area = [0.0; STEPS];
         for i in &island.points {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the steps")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "clamped to the steps"
+            )]
             let slot = ((island.peak - self.way[*i]) / step).clamp(0.0, STEPS as f64 - 1.0) as usize;
             area[slot] += self.surface.area[*i];
         }
@@ -210,7 +218,12 @@ impl Sweep<'_> {
         let (length, area) = ends.into_iter().find(thin)?;
         let base = island.peak - length;
         let place = |i: &usize| (*i, ((self.way[*i] - base) / length).clamp(0.0, 1.0));
-        let points: Vec<(usize, f64)> = island.points.iter().filter(|i| self.way[**i] > base).map(place).collect();
-        (length >= SHORTEST && points.len() > 2 && area < 0.35 * self.shape.area).then_some(Protrusion { points, length, paired })
+        let points: Vec<(usize, f64)> =
+            island.points.iter().filter(|i| self.way[**i] > base).map(place).collect();
+        (length >= SHORTEST && points.len() > 2 && area < 0.35 * self.shape.area).then_some(Protrusion {
+            points,
+            length,
+            paired,
+        })
     }
 }

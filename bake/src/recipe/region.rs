@@ -48,7 +48,9 @@ impl Regions {
         let chains: Vec<usize> =
             skeleton.chains.iter().map(|c| number(if c.ear { "ear" } else { "tail" }, c.length)).collect();
         let protrusions: Vec<usize> = (0..field.protrusions.len())
-            .map(|k| number(if field.protrusions[k].paired { "ear" } else { "crest" }, field.protrusions[k].length))
+            .map(|k| {
+                number(if field.protrusions[k].paired { "ear" } else { "crest" }, field.protrusions[k].length)
+            })
             .collect();
         let of = field.label.iter().map(|label| match label {
             Label::Body => 0,
@@ -78,7 +80,8 @@ impl Regions {
             region.gain *= recipe.gain;
             region.max_offset *= recipe.max_offset;
         }
-        for (n, (rule, share)) in recipe.rules.iter().zip(shares).enumerate().filter(|(_, (r, _))| r.tunes()) {
+        for (n, (rule, share)) in recipe.rules.iter().zip(shares).enumerate().filter(|(_, (r, _))| r.tunes())
+        {
             let Some(first) = share.iter().position(|s| *s > 0.5) else { continue };
             let name = rule.region.clone().unwrap_or_else(|| format!("rule {}", n + 1));
             let automatic = self.list[usize::from(self.of[first])].clone();
@@ -160,9 +163,11 @@ pub(super) fn shares(model: &Model, surface: &Surface, recipe: &Recipe) -> Vec<V
     recipe.rules.iter().map(of_rule).collect()
 }
 
-/// The trunk's flesh: the deeper the slower.
+/// The trunk's flesh: the deeper the slower; lean bodies swing less.
 fn flesh(depth: f64) -> Region {
-    region("flesh", (3.0 - 6.0 * depth).clamp(1.8, 2.8), 0.28, 0.3 * depth)
+    #[expect(clippy::cast_possible_truncation, reason = "parameters are f32")]
+    let gain = (depth / 0.11).clamp(0.4, 1.0) as f32;
+    Region { gain, ..region("flesh", (3.0 - 6.0 * depth).clamp(1.8, 2.8), 0.28, 0.3 * depth) }
 }
 
 /// Something that sticks out: the longer the slower.

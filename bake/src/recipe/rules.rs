@@ -70,7 +70,15 @@ pub struct Rule {
 impl Default for Recipe {
     fn default() -> Self {
         let file = String::new();
-        Self { file, softness: 1.0, frequency: 1.0, damping: 1.0, gain: 1.0, max_offset: 1.0, rules: Vec::new() }
+        Self {
+            file,
+            softness: 1.0,
+            frequency: 1.0,
+            damping: 1.0,
+            gain: 1.0,
+            max_offset: 1.0,
+            rules: Vec::new(),
+        }
     }
 }
 

@@ -25,7 +25,6 @@ pub(super) enum Part {
 /// A joint that moves skin, or where such joints branch.
 #[derive(Clone, Debug)]
 pub(super) struct Bone {
-    pub(super) node: usize,
     pub(super) parent: Option<usize>,
     pub(super) children: Vec<usize>,
     /// Joint's rest position, body sizes.
@@ -93,7 +92,6 @@ impl Skeleton {
             let position = (rest[node].w_axis.truncate() - surface.corner) / surface.size;
             skeleton.bone_of.insert(node, index);
             skeleton.bones.push(Bone {
-                node,
                 parent,
                 children: Vec::new(),
                 position,
@@ -154,7 +152,8 @@ impl Skeleton {
         let inside = self.subtree(root);
         for &b in &inside {
             let parent = self.bones[b].parent.filter(|_| b != root);
-            let way = parent.map(|p| self.bones[p].along + self.bones[p].position.distance(self.bones[b].position));
+            let way =
+                parent.map(|p| self.bones[p].along + self.bones[p].position.distance(self.bones[b].position));
             self.bones[b].along = way.unwrap_or(base);
         }
         let mut longest = base;
@@ -177,11 +176,12 @@ impl Skeleton {
                 }
             }
         }
-        for b in 0..self.bones.len() {
-            let heaviest = self.bones[b].children.iter().max_by(|x, y| {
-                self.bones[**x].below.total_cmp(&self.bones[**y].below).then(y.cmp(x))
-            });
-            self.bones[b].tip = heaviest.map_or(farthest[b].1, |c| self.bones[*c].position);
+        for (b, (_, skin)) in farthest.into_iter().enumerate() {
+            let heaviest = self.bones[b]
+                .children
+                .iter()
+                .max_by(|x, y| self.bones[**x].below.total_cmp(&self.bones[**y].below).then(y.cmp(x)));
+            self.bones[b].tip = heaviest.map_or(skin, |c| self.bones[*c].position);
         }
     }
 }

@@ -21,12 +21,19 @@ const BORDER: f64 = 0.02;
 pub(super) fn even(surface: &Surface, soft: &mut [f64]) {
     let raw = soft.to_vec();
     let mass: Vec<f64> = surface.area.iter().map(|a| a + 1e-9).collect();
-    let pulls: Vec<Vec<(usize, f64)>> = surface.links.iter().enumerate().map(|(i, row)| {
-        row.iter().map(|(j, length)| {
-            let length = length.max(1e-3);
-            (*j, EVEN * EVEN * mass[i].min(mass[*j]) / (length * length))
-        }).collect()
-    }).collect();
+    let pulls: Vec<Vec<(usize, f64)>> = surface
+        .links
+        .iter()
+        .enumerate()
+        .map(|(i, row)| {
+            row.iter()
+                .map(|(j, length)| {
+                    let length = length.max(1e-3);
+                    (*j, EVEN * EVEN * mass[i].min(mass[*j]) / (length * length))
+                })
+                .collect()
+        })
+        .collect();
     for _ in 0..PASSES {
         for i in 0..soft.len() {
             let (mut sum, mut weight) = (mass[i] * raw[i], mass[i]);
