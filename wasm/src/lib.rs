@@ -12,6 +12,11 @@ pub mod replay;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
+/// Small, as everything here; nothing is allocated per frame.
+#[cfg(target_arch = "wasm32")]
+#[global_allocator]
+static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
+
 /// Version of this build, as in `package.json`.
 #[must_use]
 #[wasm_bindgen]

@@ -87,7 +87,8 @@ fn carry_out(check: &Check) -> (Count, Vec<String>) {
         Outcome::Skipped(why) => (Count::default(), format!("skipped: {why}")),
     };
     let seconds = format!("{:.1}", start.elapsed().as_secs_f64());
-    report::note(format!("{result:>7} {} ({seconds} s)", check.name));
+    let word = result.split(':').next().unwrap_or(&result);
+    report::note(format!("{word:>7} {} ({seconds} s)", check.name));
     let row =
         vec![check.name.to_owned(), seconds, count.passed.to_string(), count.failed.to_string(), result];
     (count, row)

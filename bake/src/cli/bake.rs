@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         json: json!({
             "asset": arguments.out, "hash": format!("{:016x}", asset.hash), "bytes": bytes.len(),
             "vertices": m.vertices, "points": m.points, "active": m.active, "joints": m.joints,
-            "clips": m.clips, "regions": flesh.regions, "symmetric": flesh.symmetric, "notes": notes,
+            "clips": m.clips, "regions": flesh.regions, "symmetric": flesh.mirror.is_some(), "notes": notes,
         }),
         lines,
         ok: true,

@@ -81,7 +81,7 @@ fn page(model: &Model, flesh: &Flesh, asset: &Asset<'_>) -> Result<String, Error
         ("joints", m.joints.to_string()),
         ("influences a point", m.stride.to_string()),
         ("clips", m.clips.to_string()),
-        ("mirror symmetric", if flesh.symmetric { "yes" } else { "no" }.to_owned()),
+        ("mirror symmetric", if flesh.mirror.is_some() { "yes" } else { "no" }.to_owned()),
         ("memory of a character", format!("{} kB", 4 * sinew::Character::required_len(asset) / 1000)),
         ("content hash", format!("{:016x}", asset.hash)),
     ];
