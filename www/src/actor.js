@@ -28,7 +28,7 @@ export class Actor {
     this.twin = new Twin(this.model);
     this.mixer = new THREE.AnimationMixer(this.model);
     this.animations = gltf.animations;
-    this.clips = [...gltf.animations.map((clip, i) => clip.name || `Clip ${i + 1}`), 'Root shake (built in)'];
+    this.clips = [...gltf.animations.map((clip, i) => clip.name || `Clip ${i + 1}`), 'Built-in shake'];
     this.box = this.#measure();
     this.character = new SinewCharacter(gltf, asset);
     this.asset = this.character.asset;

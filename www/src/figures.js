@@ -12,6 +12,8 @@ function micros(us) {
   return us < 1000 ? `${Math.round(us)} µs` : `${(us / 1000).toFixed(2)} ms`;
 }
 
+const perSecond = (ms) => (1000 / ms).toFixed(ms > 100 ? 1 : 0);
+
 /** The last values of a series. */
 class Recent {
   #values = new Float64Array(FRAMES);
@@ -80,7 +82,7 @@ export class Figures {
   show(now) {
     if (now < this.#due) return;
     this.#due = now + EVERY_MS;
-    if (this.#frame.length) this.#cells.fps.textContent = Math.round(1000 / this.#frame.quantile(0.5));
+    if (this.#frame.length) this.#cells.fps.textContent = perSecond(this.#frame.quantile(0.5));
     if (!this.#cost.length) return;
     this.median.textContent = micros(this.#cost.quantile(0.5));
     this.#cells.cost.textContent = `${this.median.textContent}, ${micros(this.#cost.quantile(0.95))}`;

@@ -32,6 +32,10 @@ export function listen(actions, walk) {
     event.preventDefault();
     action();
   });
+  // A button that was clicked would take the space bar from now on.
+  addEventListener('click', (event) => {
+    if (event.detail > 0) event.target.closest?.('button')?.blur();
+  });
   addEventListener('keyup', (event) => {
     if (held.delete(event.key)) tell();
   });

@@ -1,8 +1,8 @@
 // The stage: renderer, light, ground, and a camera that fits whatever stands there.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import { Ground } from './ground.js';
+import { studio } from './studio.js';
 
 const FRONT = new THREE.Vector3(0.5, 0.24, 1).normalize();
 const ABREAST = new THREE.Vector3(0.12, 0.2, 1).normalize();
@@ -43,11 +43,9 @@ export class Stage {
   }
 
   #light() {
-    const pmrem = new THREE.PMREMGenerator(this.renderer);
-    this.#reflections = pmrem.fromScene(new RoomEnvironment(), 0.04).texture;
+    this.#reflections = studio(this.renderer);
     this.scene.environment = this.#reflections;
-    this.scene.environmentIntensity = 0.2;
-    pmrem.dispose();
+    this.scene.environmentIntensity = 0.45;
     const sun = (color, intensity, x, y, z) => {
       const light = new THREE.DirectionalLight(color, intensity);
       light.position.set(x, y, z);
