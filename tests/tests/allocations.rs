@@ -2,11 +2,12 @@
 
 #![allow(unsafe_code, reason = "an allocator is unsafe by its trait; this one only counts")]
 
+use core::alloc::{GlobalAlloc, Layout};
+use core::cell::Cell;
 use sinew::{Character, Root};
 use sinew_tests::run::{memory, parse};
 use sinew_tests::tube;
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use std::alloc::System;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
@@ -39,7 +40,7 @@ fn allocations(f: impl FnOnce()) -> usize {
 
 #[test]
 fn a_frame_allocates_nothing() {
-    assert!(allocations(|| drop(std::hint::black_box(vec![1]))) > 0, "the counter counts");
+    assert!(allocations(|| drop(core::hint::black_box(vec![1]))) > 0, "the counter counts");
     let aligned = tube::asset(1.0);
     let asset = parse(&aligned);
     let mut memory = memory(&asset);
@@ -49,7 +50,7 @@ fn a_frame_allocates_nothing() {
         for i in 0..100_u8 {
             let dt = 1.0 / (60.0 + f32::from(i % 3));
             character.step_clip(0, f32::from(i) / 100.0, Root::default(), dt).unwrap();
-            std::hint::black_box(character.digests());
+            core::hint::black_box(character.digests());
         }
         character.save_state(&mut state).unwrap();
         character.load_state(&state).unwrap();

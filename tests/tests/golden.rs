@@ -10,9 +10,9 @@ use sinew_bake::recipe::{Recipe, flesh};
 use sinew_bake::{builtin, pack};
 
 /// Content hash of the built-in character's asset.
-const ASSET: u64 = 0xe1ef_893c_ca9c_20f0;
+const ASSET: u64 = 0x4fc3_4214_3e01_2219;
 /// Digest of the 600 frames.
-const REPLAY: u64 = 0x0942_ab85_4afc_81ba;
+const REPLAY: u64 = 0x8127_e64f_a503_fba2;
 /// Frames.
 const FRAMES: u32 = 600;
 
