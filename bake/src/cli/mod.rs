@@ -1,6 +1,7 @@
 //! Arguments, exit codes and progress.
 
 mod bake;
+mod bench;
 mod inspect;
 mod load;
 mod pictures;
@@ -32,6 +33,11 @@ enum Command {
     Play(play::Arguments),
     /// Replay a recording and compare every frame, bit for bit
     Verify(verify::Arguments),
+    /// Measure the runtime on this machine, with peers in the same run
+    Bench {
+        /// springs, skin or character-frame; all without it
+        name: Option<String>,
+    },
     /// Say what is in a .glb, .vrm, .sinew or .replay
     Inspect {
         /// The file
@@ -53,6 +59,7 @@ pub(super) fn main() -> ExitCode {
         Command::Bake(a) => bake::run(a),
         Command::Play(a) => play::run(a),
         Command::Verify(a) => verify::run(a),
+        Command::Bench { name } => bench::run(name.as_deref()),
         Command::Inspect { file } => inspect::run(file),
     };
     match outcome {

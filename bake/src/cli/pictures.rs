@@ -31,7 +31,7 @@ impl<'a> Pictures<'a> {
     /// Camera, scene and width of a picture that shows all frames.
     fn stage(&self, frames: &[Frame]) -> (Camera, Scene<'a>, usize) {
         let all = frames.iter().step_by(4).flat_map(|f| f.flesh.iter().chain(&f.skinned));
-        let points: Vec<DVec3> = all.step_by(3).map(|p| DVec3::from_array(p.map(f64::from))).collect();
+        let points: Vec<DVec3> = all.map(|p| DVec3::from_array(p.map(f64::from))).collect();
         let low = points.iter().copied().reduce(DVec3::min).unwrap_or_default();
         let high = points.iter().copied().reduce(DVec3::max).unwrap_or(DVec3::ONE);
         let extent = high - low;
