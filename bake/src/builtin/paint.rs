@@ -1,29 +1,40 @@
-//! Colours: a small texture of ramps, and where on it each point lies.
+//! Colours: a small texture, and where on it each point lies.
+//!
+//! Across, the texture runs from dusk over fur to cream; down, it turns pink. Both coordinates are
+//! continuous on the body, so nothing shows between the vertices that was not meant.
 
 use glam::DVec3;
 
-/// Colours of the ramps, sRGB: fur, and what it turns into: cream, pink, dusk.
+/// Colours, sRGB.
+const DUSK: [u8; 3] = [96, 70, 150];
 const FUR: [u8; 3] = [142, 112, 196];
-const RAMPS: [[u8; 3]; 4] = [[255, 238, 214], [255, 166, 176], [96, 70, 150], [142, 112, 196]];
-/// Pixels of a ramp, and rows that each takes.
-const WIDTH: u32 = 64;
-const ROWS: u32 = 8;
+const CREAM: [u8; 3] = [255, 238, 214];
+const PINK: [u8; 3] = [255, 166, 176];
+/// Pixels across and down.
+const SIZE: (u32, u32) = (96, 32);
+/// Share of the width from dusk to fur.
+const DARK: u32 = SIZE.0 / 3;
 
-/// The texture as PNG: ramp `k` in band `k`, fur at the left.
+fn mix(a: [u8; 3], b: [u8; 3], share: u32, of: u32) -> [u8; 3] {
+    [0, 1, 2].map(|c| {
+        let (a, b) = (u32::from(a[c]), u32::from(b[c]));
+        u8::try_from((a * (of - share) + b * share) / of).unwrap_or(255)
+    })
+}
+
+/// The texture as PNG.
 pub(super) fn texture() -> Vec<u8> {
+    let (width, height) = SIZE;
     let mut pixels = Vec::new();
-    for y in 0..4 * ROWS {
-        let end = RAMPS[(y / ROWS) as usize];
-        for x in 0..WIDTH {
-            let mix = |a: u8, b: u8| {
-                let (a, b) = (u32::from(a), u32::from(b));
-                u8::try_from((a * (WIDTH - 1 - x) + b * x) / (WIDTH - 1)).unwrap_or(255)
-            };
-            pixels.extend([0, 1, 2].map(|c| mix(FUR[c], end[c])));
+    for y in 0..height {
+        for x in 0..width {
+            let fur =
+                if x < DARK { mix(DUSK, FUR, x, DARK) } else { mix(FUR, CREAM, x - DARK, width - 1 - DARK) };
+            pixels.extend(mix(fur, PINK, y, height - 1));
         }
     }
     let mut out = Vec::new();
-    let mut encoder = png::Encoder::new(&mut out, WIDTH, 4 * ROWS);
+    let mut encoder = png::Encoder::new(&mut out, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     let written = encoder.write_header().and_then(|mut w| w.write_image_data(&pixels));
@@ -60,12 +71,7 @@ pub(super) fn uv(p: DVec3, n: DVec3) -> [f32; 2] {
     let back = 0.7 * bump(0.3, 0.9, -n.z) * bump(0.25, 0.5, p.y);
     let cream = belly.max(muzzle).max(tips);
     let pink = ear.max(toes).max(blush);
-    let (band, u) = if cream >= pink && cream > 0.0 {
-        (0.0, cream)
-    } else if pink > 0.0 {
-        (1.0, pink)
-    } else {
-        (2.0, back)
-    };
-    [crate::pack::narrow(0.01 + 0.98 * u), crate::pack::narrow((band + 0.5) / 4.0)]
+    // A third of the way is fur; the ends stay clear of the texture's wrapping edge.
+    let across = (1.0 - back) / 3.0 * (1.0 - cream) + cream;
+    [crate::pack::narrow(0.02 + 0.96 * across), crate::pack::narrow(0.03 + 0.94 * pink.min(1.0))]
 }
