@@ -10,9 +10,9 @@ use sinew_bake::recipe::{Recipe, flesh};
 use sinew_bake::{builtin, pack};
 
 /// Content hash of the built-in character's asset.
-const ASSET: u64 = 0x4fc3_4214_3e01_2219;
+const ASSET: u64 = 0x7e21_2de4_dba3_d411;
 /// Digest of the 600 frames.
-const REPLAY: u64 = 0x8127_e64f_a503_fba2;
+const REPLAY: u64 = 0x6d7c_6672_f8d5_f67b;
 /// Frames.
 const FRAMES: u32 = 600;
 

@@ -56,15 +56,21 @@ fn relax(points: &mut [DVec3], triangles: &[[u32; 3]]) {
     }
 }
 
-/// Mirror partner of each point, itself on the middle plane.
+/// Mirror partner of each point, itself on the middle plane: the nearest to its image.
 fn partners(points: &[DVec3]) -> Vec<usize> {
     #[allow(clippy::cast_possible_truncation, reason = "a small grid")]
-    let key = |p: DVec3| (p / (0.05 * CELL)).round().to_array().map(|x| x as i64);
-    let known: BTreeMap<[i64; 3], usize> = points.iter().enumerate().map(|(i, p)| (key(*p), i)).collect();
+    let key = |p: DVec3| (p / CELL).round().to_array().map(|x| x as i64);
+    let mut known: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
+    for (i, p) in points.iter().enumerate() {
+        known.entry(key(*p)).or_default().push(i);
+    }
     let find = |(i, p): (usize, &DVec3)| {
-        let [x, y, z] = key(DVec3::new(-p.x, p.y, p.z));
+        let image = DVec3::new(-p.x, p.y, p.z);
+        let [x, y, z] = key(image);
         let around = (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
-        around.filter_map(|c| known.get(&c).copied()).next().unwrap_or(i)
+        let distance = |j: &usize| (points[*j] - image).length();
+        let near = around.filter_map(|c| known.get(&c)).flatten().copied();
+        near.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(i)
     };
     points.iter().enumerate().map(find).collect()
 }
