@@ -9,15 +9,28 @@
 
 use crate::Model;
 use crate::play::{Frame, Motion, Player};
-use crate::render::{self, Camera, Figure, Framing, Legend, Pose, Row, Sheet};
+use crate::render::{self, Camera, Figure, Framing, GifWriter, Legend, Pose, Row, Sheet, Show, gif_stride};
 use glam::DVec3;
 use image::RgbImage;
 use rayon::prelude::*;
+use std::io::{self, Write};
 
+/// Frames of a GIF that are drawn at a time, on all threads.
+const BATCH: usize = 16;
 /// From where characters are seen: azimuth and elevation, radians.
 const VIEW: (f32, f32) = (0.62, 0.18);
 /// Shapes of pictures, width by height; the one that the run fills best is taken.
 const ASPECTS: [f32; 7] = [0.7, 0.85, 1.0, 1.2, 1.4, 1.6, 1.8];
+
+/// Length of a round of the built-in shake, s.
+const SHAKE_ROUND: f32 = 2.0;
+
+/// Azimuth of a character's front, radians: +Z by glTF's convention, -Z for VRM 0.
+#[must_use]
+pub fn front(model: &Model) -> f32 {
+    let turned = model.vrm.as_ref().is_some_and(|vrm| vrm.major_version == 0);
+    if turned { core::f32::consts::PI } else { 0.0 }
+}
 
 /// What a first look at a run finds.
 #[derive(Clone, Debug)]
@@ -26,29 +39,30 @@ pub struct Survey {
     /// Numbers of the frames for the contact sheet, ascending.
     wanted: Vec<u32>,
     moments: Vec<Frame>,
-    fps: f32,
     /// Greatest distance from skinning, body sizes.
     pub hottest: f32,
 }
 
 impl Survey {
-    /// Prepares for the frames of `player`; `columns` moments are kept for the contact sheet, from the first round
-    /// of a looped clip.
+    /// Prepares for the frames of `player`, which plays `model`; `columns` moments are kept for the contact sheet,
+    /// from the last round of a motion that repeats.
     #[must_use]
-    pub fn new(player: &Player<'_>, columns: u32) -> Self {
+    pub fn new(model: &Model, player: &Player<'_>, columns: u32) -> Self {
         let round = match &player.motion {
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few thousand")]
-            Motion::Clip { duration, looped: true, .. } => libm::roundf(duration * player.fps) as u32,
-            _ => player.frames,
+            Motion::Clip { duration, looped: true, .. } => *duration,
+            Motion::Clip { .. } => f32::INFINITY,
+            Motion::Shake => SHAKE_ROUND,
         };
-        let span = u64::from(round.clamp(1, player.frames.max(1)));
-        let columns = u64::from(columns).min(span).max(1);
-        let wanted = (0..columns).map(|k| u32::try_from(k * span / columns).unwrap_or(u32::MAX)).collect();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+        let span = (libm::roundf(round * player.fps) as u32).clamp(1, player.frames.max(1));
+        let columns = columns.clamp(1, span);
+        let moment = |k: u32| u64::from(k) * u64::from(span) / u64::from(columns);
+        let first = player.frames - span;
+        let wanted = (0..columns).map(|k| first + u32::try_from(moment(k)).unwrap_or(span)).collect();
         Self {
-            framings: ASPECTS.map(|a| (a, Framing::new(a, VIEW.0, VIEW.1))),
+            framings: ASPECTS.map(|a| (a, Framing::new(a, front(model) + VIEW.0, VIEW.1))),
             wanted,
             moments: Vec::new(),
-            fps: player.fps,
             hottest: 0.0,
         }
     }
@@ -100,9 +114,10 @@ impl<'a> Film<'a> {
     /// Places the camera for pictures `height` pixels high.
     #[must_use]
     pub fn new(model: &'a Model, survey: Survey, height: u32) -> Self {
-        let (aspect, framing) = survey.framings.iter().fold(survey.framings[0], |best, this| {
-            if this.1.fit() > best.1.fit() { *this } else { best }
-        });
+        let (aspect, framing) = survey
+            .framings
+            .iter()
+            .fold(survey.framings[0], |best, this| if this.1.fit() > best.1.fit() { *this } else { best });
         #[allow(clippy::cast_precision_loss, reason = "pixels")]
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "pixels")]
         let width = libm::roundf(height as f32 * aspect).max(1.0) as u32;
@@ -118,9 +133,9 @@ impl<'a> Film<'a> {
             Look::Flesh | Look::Heat => (&frame.flesh, &frame.flesh_normals),
         };
         let most = self.survey.hottest.max(f32::MIN_POSITIVE);
-        let heat: Option<Vec<f32>> =
-            (look == Look::Heat).then(|| frame.heat.iter().map(|h| h / most).collect());
-        let pose = Pose { positions, normals, rigid: &frame.rigid, heat: heat.as_deref() };
+        let heat: Vec<f32> = frame.heat.iter().map(|h| h / most).collect();
+        let show = if look == Look::Heat { Show::Heat(&heat) } else { Show::Materials };
+        let pose = Pose { positions, normals, rigid: &frame.rigid, show };
         self.figure.draw(&pose, &self.camera, self.size[0], self.size[1])
     }
 
@@ -140,10 +155,49 @@ impl<'a> Film<'a> {
         frames.par_iter().map(draw).collect()
     }
 
-    /// Moments from all over the run: what a palette has to suit.
+    /// Size of a picture, pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Moments from all over the run.
     #[must_use]
     pub fn moments(&self) -> &[Frame] {
         &self.survey.moments
+    }
+
+    /// Writes a looping GIF of what `player` still has to play. `drawn` is called for each frame that was played.
+    ///
+    /// # Errors
+    ///
+    /// The writer's; the player's as an [`io::Error`] with an [`Error`](crate::Error) inside.
+    pub fn gif<W: Write>(
+        &self,
+        out: W,
+        player: &mut Player<'_>,
+        looks: &[(&str, Look)],
+        mut drawn: impl FnMut(),
+    ) -> io::Result<W> {
+        let stride = gif_stride(player.fps);
+        #[allow(clippy::cast_precision_loss, reason = "a small number")]
+        let fps = player.fps / stride as f32;
+        // The palette is to suit moments from all over the run.
+        let mut gif = GifWriter::new(out, &self.draw_all(self.moments(), looks), fps)?;
+        let mut batch = Vec::with_capacity(BATCH);
+        loop {
+            let frame = player.next().map_err(io::Error::other)?;
+            let ended = frame.is_none();
+            batch.extend(frame.filter(|f| f.index % stride == 0).cloned());
+            if ended || batch.len() == BATCH {
+                self.draw_all(&batch, looks).iter().try_for_each(|picture| gif.push(picture))?;
+                batch.clear();
+            }
+            if ended {
+                return gif.finish();
+            }
+            drawn();
+        }
     }
 
     /// The contact sheet: one row a look, one column a moment. `drawn` is called after each row.
@@ -154,17 +208,12 @@ impl<'a> Film<'a> {
             drawn();
             Row { label: (*name).to_owned(), cells }
         };
-        let time = |f: &Frame| {
-            #[allow(clippy::cast_precision_loss, reason = "a number of frames")]
-            let time = f.index as f32 / self.survey.fps;
-            format!("{time:.2} s")
-        };
         let rows: Vec<Row> = looks.iter().map(row).collect();
         let heat = looks.iter().any(|(_, look)| *look == Look::Heat);
         render::contact_sheet(&Sheet {
             title: self.model.name.clone(),
             note: note.to_owned(),
-            columns: self.moments().iter().map(time).collect(),
+            columns: self.moments().iter().map(|f| format!("{:.2} s", f.time)).collect(),
             rows,
             legend: heat.then(|| Legend {
                 caption: "distance from skinning, % of the body".to_owned(),

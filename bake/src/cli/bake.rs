@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     notes.extend(write_tunables(&arguments.out, &asset)?);
     bar.inc(1);
     if let Some(folder) = &arguments.report {
-        let _ = folder;
+        sinew_bake::report::character(&model, &flesh, &aligned, folder)?;
     }
     bar.finish_and_clear();
     let m = &asset.meta;

@@ -92,7 +92,8 @@ fn print(lines: &[String]) -> io::Result<()> {
 /// An error in one line: what parsers say may have several, and names in files anything.
 fn one_line(error: &Error) -> String {
     let text = error.to_string();
-    let words: Vec<&str> = text.split(|c: char| c.is_control() || c == ' ').filter(|w| !w.is_empty()).collect();
+    let words: Vec<&str> =
+        text.split(|c: char| c.is_control() || c == ' ').filter(|w| !w.is_empty()).collect();
     words.join(" ")
 }
 

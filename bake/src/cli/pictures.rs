@@ -3,16 +3,12 @@
 use super::play::{Arguments, Run, Summary, every};
 use super::progress;
 use sinew_bake::film::{Film, Look, Survey};
-use sinew_bake::play::{Frame, Player};
-use sinew_bake::render::{GifWriter, gif_stride, write_png};
+use sinew_bake::play::Player;
+use sinew_bake::render::write_png;
 use sinew_bake::{Error, Model, export};
-use std::io;
-use std::path::Path;
 
 /// Columns of a contact sheet.
 const COLUMNS: u32 = 6;
-/// Frames of a GIF that are drawn at a time, on all threads.
-const BATCH: usize = 16;
 
 /// Writes the contact sheet: skinning, sinew, heat map.
 pub(super) fn sheet(arguments: &Arguments, run: &mut Run<'_>) -> Result<Summary, Error> {
@@ -36,40 +32,18 @@ pub(super) fn gif(arguments: &Arguments, run: &mut Run<'_>) -> Result<Summary, E
         (false, false) => &looks[..],
     };
     let (film, summary) = survey(arguments, run)?;
-    let samples = film.draw_all(film.moments(), looks);
     let mut player = run.player()?;
-    let stride = gif_stride(player.fps);
-    #[allow(clippy::cast_precision_loss, reason = "a small number")]
-    let fps = player.fps / stride as f32;
-    export::write_atomic(&arguments.out, |file| {
-        let mut gif = GifWriter::new(file, &samples, fps)?;
-        let mut batch = Vec::with_capacity(BATCH);
-        let mut draw = |batch: &mut Vec<Frame>| -> Result<(), Error> {
-            let pictures = film.draw_all(batch, looks);
-            batch.clear();
-            pictures.iter().try_for_each(|p| gif.push(p)).map_err(|e| unwritten(&arguments.out, e))
-        };
-        let all = every("draw", &mut player, |frame| {
-            if frame.index % stride == 0 {
-                batch.push(frame.clone());
-            }
-            if batch.len() == BATCH { draw(&mut batch) } else { Ok(()) }
-        });
-        all.and_then(|_| draw(&mut batch)).map_err(io::Error::other)?;
-        gif.finish().map(drop)
-    })?;
+    let bar = progress::bar("draw", u64::from(player.frames));
+    export::write_atomic(&arguments.out, |file| film.gif(file, &mut player, looks, || bar.inc(1)).map(drop))?;
+    bar.finish_and_clear();
     Ok(summary)
-}
-
-pub(super) fn unwritten(path: &Path, source: io::Error) -> Error {
-    Error::Write { path: path.to_owned(), source }
 }
 
 /// Plays the run once to find out where the camera has to stand.
 fn survey<'a>(arguments: &Arguments, run: &mut Run<'a>) -> Result<(Film<'a>, Summary), Error> {
     let model: &'a Model = run.model;
     let mut player: Player<'_> = run.player()?;
-    let mut survey = Survey::new(&player, COLUMNS);
+    let mut survey = Survey::new(model, &player, COLUMNS);
     let summary = every("play", &mut player, |frame| {
         survey.add(model, frame);
         Ok(())

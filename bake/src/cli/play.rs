@@ -1,7 +1,6 @@
 //! `sinew play`.
 
-use super::pictures::{self, unwritten};
-use super::{Outcome, load, progress};
+use super::{Outcome, load, pictures, progress};
 use serde_json::json;
 use sinew::{Asset, Character};
 use sinew_bake::export::morph::{self, MorphFrame};
@@ -152,11 +151,12 @@ fn shown(frame: &Frame, flesh: bool) -> (&[[f32; 3]], &[[f32; 3]]) {
 
 fn array(arguments: &Arguments, run: &mut Run<'_>) -> Result<Summary, Error> {
     let (out, flesh) = (arguments.out.as_path(), !arguments.no_flesh);
+    let unwritten = |source| Error::Write { path: out.to_owned(), source };
     let vertices = run.model.vertex_count();
     let mut player = run.player()?;
     export::write_atomic(out, |file| {
         npy::header(file, player.frames, vertices)?;
-        let write = |frame: &Frame| npy::frame(file, shown(frame, flesh).0).map_err(|e| unwritten(out, e));
+        let write = |frame: &Frame| npy::frame(file, shown(frame, flesh).0).map_err(unwritten);
         every("play", &mut player, write).map_err(io::Error::other)
     })
 }

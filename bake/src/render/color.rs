@@ -30,6 +30,12 @@ static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
     (0..=STEPS).map(encode).collect()
 });
 
+/// Linear light of an sRGB byte.
+#[must_use]
+pub fn linear(byte: u8) -> f32 {
+    LINEAR[usize::from(byte)]
+}
+
 /// Linear light of an sRGB color.
 #[must_use]
 pub(super) fn to_linear(srgb: [u8; 3]) -> [f32; 3] {

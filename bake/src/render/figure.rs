@@ -26,8 +26,19 @@ pub struct Pose<'a> {
     pub normals: &'a [[f32; 3]],
     /// Transforms of [`Model::rigid`], one each.
     pub rigid: &'a [DMat4],
-    /// Heat `0..=1` a render vertex, drawn instead of the materials.
-    pub heat: Option<&'a [f32]>,
+    /// What is painted on it.
+    pub show: Show<'a>,
+}
+
+/// What is painted on a figure.
+#[derive(Clone, Copy, Debug)]
+pub enum Show<'a> {
+    /// Its materials.
+    Materials,
+    /// Heat `0..=1` a render vertex.
+    Heat(&'a [f32]),
+    /// A linear color a render vertex.
+    Colors(&'a [[f32; 3]]),
 }
 
 impl<'a> Figure<'a> {
@@ -46,7 +57,6 @@ impl<'a> Figure<'a> {
     #[must_use]
     pub fn draw(&self, pose: &Pose<'_>, camera: &Camera, width: u32, height: u32) -> RgbImage {
         let rigid: Vec<_> = self.model.rigid.iter().zip(pose.rigid).map(|(r, m)| placed(r, m)).collect();
-        let cold = vec![0.0; self.model.rigid.iter().map(|r| r.positions.len()).max().unwrap_or(0)];
         let mut surfaces = Vec::new();
         let mut start = 0;
         for p in &self.model.primitives {
@@ -57,7 +67,11 @@ impl<'a> Figure<'a> {
                 normals: &pose.normals[range.clone()],
                 uvs: &p.uvs,
                 triangles: &p.indices,
-                paint: self.paint(p.material, pose.heat.map(|h| &h[range])),
+                paint: match pose.show {
+                    Show::Materials => self.paint(p.material),
+                    Show::Heat(heat) => Paint::Heat(&heat[range]),
+                    Show::Colors(colors) => Paint::Colors(&colors[range]),
+                },
                 double_sided: self.double_sided(p.material),
             });
         }
@@ -67,27 +81,18 @@ impl<'a> Figure<'a> {
                 normals,
                 uvs: &r.uvs,
                 triangles: &r.indices,
-                paint: self.paint(r.material, pose.heat.map(|_| cold.as_slice())),
+                paint: match pose.show {
+                    Show::Materials => self.paint(r.material),
+                    // What hangs on a node has no flesh.
+                    Show::Heat(_) | Show::Colors(_) => Paint::Heat(&[]),
+                },
                 double_sided: self.double_sided(r.material),
             });
         }
         render(&surfaces, camera, width, height)
     }
 
-    /// Draws several moments, on all threads, in order.
-    ///
-    /// # Panics
-    ///
-    /// As [`Self::draw`].
-    #[must_use]
-    pub fn draw_all(&self, poses: &[Pose<'_>], camera: &Camera, width: u32, height: u32) -> Vec<RgbImage> {
-        poses.par_iter().map(|pose| self.draw(pose, camera, width, height)).collect()
-    }
-
-    fn paint<'p>(&'p self, material: Option<usize>, heat: Option<&'p [f32]>) -> Paint<'p> {
-        if let Some(heat) = heat {
-            return Paint::Heat(heat);
-        }
+    fn paint(&self, material: Option<usize>) -> Paint<'_> {
         let Some((material, index)) = material.and_then(|i| Some((self.model.materials.get(i)?, i))) else {
             return Paint::Flat(CLAY);
         };

@@ -21,8 +21,8 @@ mod texture;
 
 pub use animation::{GifWriter, MAX_GIF_FPS, gif_stride};
 pub use camera::{Camera, Framing};
-pub use color::heat as heat_color;
-pub use figure::{Figure, Pose};
+pub use color::{heat as heat_color, linear};
+pub use figure::{Figure, Pose, Show};
 pub use shade::render;
 pub use sheet::{Legend, Row, Sheet, contact_sheet, encode_png, side_by_side, write_png};
 pub use texture::Texture;
@@ -58,6 +58,8 @@ pub enum Paint<'a> {
     },
     /// A heat `0..=1` a vertex, in the colors of [`heat_color`].
     Heat(&'a [f32]),
+    /// A linear color a vertex, lit as evenly as heat.
+    Colors(&'a [[f32; 3]]),
 }
 
 #[cfg(test)]

@@ -94,6 +94,10 @@ impl<'a> Scene<'a> {
                 let color = texture.sample(uv, texture.level(libm::sqrtf(texels)));
                 core::array::from_fn(|i| color[i] * factor[i])
             }
+            Paint::Colors(colors) => {
+                let at = self.local(triangle).map(|i| colors.get(i).copied().unwrap_or([0.5; 3]));
+                [0, 1, 2].map(|k| at[0][k] * weights[0] + at[1][k] * weights[1] + at[2][k] * weights[2])
+            }
             Paint::Heat(heat) => {
                 let at = self.local(triangle).map(|i| heat.get(i).copied().unwrap_or(0.0));
                 let value = at[0] * weights[0] + at[1] * weights[1] + at[2] * weights[2];

@@ -159,7 +159,7 @@ impl<'a> Studio<'a> {
         let [a, b, c] = corners;
         let pixel_area = ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs();
         let albedo = self.scene.albedo(triangle, weights, pixel_area);
-        let plain = matches!(self.scene.surface(triangle).paint, Paint::Heat(_));
+        let plain = matches!(self.scene.surface(triangle).paint, Paint::Heat(_) | Paint::Colors(_));
         self.light(point, normal, open, albedo, plain)
     }
 
@@ -169,7 +169,7 @@ impl<'a> Studio<'a> {
         let wrap = |lamp: Vec3, w: f32| ((normal.dot(lamp) + w) / (1.0 + w)).max(0.0);
         let facing = normal.dot(self.key.toward);
         let offset = normal * (2.0 * self.key.texel()) + self.key.toward * (1.5 * self.key.texel());
-        let seen = self.key.sees_softly(point + offset);
+        let seen = SHADED + (1.0 - SHADED) * self.key.sees_softly(point + offset);
         // Where the surface turns away the shadow map has no say: the wrapped light fades by itself.
         let trust = (facing * 4.0).clamp(0.0, 1.0);
         let key = wrap(self.key.toward, 0.25) * (seen * trust + 0.35 * (1.0 - trust));
@@ -189,6 +189,9 @@ impl<'a> Studio<'a> {
         })
     }
 }
+
+/// Share of the main lamp that reaches its shadows: walls of a room throw that much back.
+const SHADED: f32 = 0.15;
 
 /// Linear light of the wall.
 const WALL_MIDDLE: [f32; 3] = [0.87, 0.88, 0.90];

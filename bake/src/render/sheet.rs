@@ -15,6 +15,8 @@ const PALE_INK: [u8; 3] = [104, 112, 124];
 const GAP: u32 = 6;
 /// Space around everything, px.
 const MARGIN: u32 = 24;
+/// Height of the label in a picture, px.
+const TAG: u32 = 28;
 
 /// Frames to put on one picture.
 #[derive(Clone, Debug, Default)]
@@ -78,7 +80,7 @@ pub fn contact_sheet(sheet: &Sheet) -> RgbImage {
         for (i, image) in (0..columns).zip(&row.cells) {
             imageops::replace(&mut page, image, i64::from(MARGIN + i * (cell[0] + GAP)), i64::from(y));
         }
-        tag(&mut page, [MARGIN + 10, y + 10], &row.label);
+        tag(&mut page, [MARGIN + 10, y + cell[1].saturating_sub(TAG + 10)], &row.label);
     }
     if let Some(legend) = &sheet.legend {
         let y = page.height() - bottom + 12;
@@ -96,7 +98,7 @@ pub fn side_by_side(panels: &[(&str, &RgbImage)]) -> RgbImage {
     let mut x = 0;
     for (label, panel) in panels {
         imageops::replace(&mut out, *panel, i64::from(x), 0);
-        tag(&mut out, [x + 12, 12], label);
+        tag(&mut out, [x + 12, height.saturating_sub(TAG + 12)], label);
         if x > 0 {
             (0..height).for_each(|y| blend(&mut out, [x, y], [255; 3], 200));
         }
@@ -110,7 +112,7 @@ fn tag(image: &mut RgbImage, [x, y]: [u32; 2], label: &str) {
     if label.is_empty() {
         return;
     }
-    let (width, height) = (LABEL.width(label) + 16, LABEL.height() + 8);
+    let (width, height) = (LABEL.width(label) + 16, TAG);
     for j in 0..height {
         for i in 0..width {
             let corner = (i == 0 || i + 1 == width) && (j == 0 || j + 1 == height);

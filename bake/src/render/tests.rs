@@ -3,6 +3,7 @@
 use super::*;
 use crate::import::import;
 use image::RgbImage;
+use rayon::prelude::*;
 use std::path::Path;
 
 /// A ball of radius 1 around the origin with its normals, in 16 × 24 faces.
@@ -132,12 +133,14 @@ fn a_real_character_is_drawn_alike_on_any_number_of_threads() {
         model.rest_positions().iter().map(|p| p.to_array().map(|v| v as f32)).collect();
     let normals: Vec<[f32; 3]> = model.primitives.iter().flat_map(|p| p.normals.clone()).collect();
     let heat: Vec<f32> = positions.iter().map(|p| p[1] / 80.0).collect();
-    let pose = |heat| Pose { positions: &positions, normals: &normals, rigid: &[], heat };
-    let poses = [pose(None), pose(Some(heat.as_slice())), pose(None)];
+    let pose = |show| Pose { positions: &positions, normals: &normals, rigid: &[], show };
+    let poses = [Show::Materials, Show::Heat(&heat), Show::Materials].map(pose);
     let camera = Camera::framing(positions.iter().copied(), 1.5, 0.7, 0.2);
     let draw = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| figure.draw_all(&poses, &camera, 150, 100))
+        pool.install(|| {
+            poses.par_iter().map(|pose| figure.draw(pose, &camera, 150, 100)).collect::<Vec<RgbImage>>()
+        })
     };
     let pictures = draw(1);
     assert_eq!(pictures, draw(3));

@@ -1,6 +1,7 @@
 //! Plots as SVG that takes its colors from the page.
 
-use super::escape;
+use super::COLORS;
+use super::page::escape;
 use std::io::{self, Write};
 
 /// Size of a plot and of the frame within it, user units.
@@ -20,7 +21,7 @@ pub struct Plot {
     pub x_label: String,
     /// Quantity and unit along the vertical axis.
     pub y_label: String,
-    /// Lines; four colors, then they repeat.
+    /// Lines.
     pub series: Vec<Series>,
 }
 
@@ -29,6 +30,8 @@ pub struct Plot {
 pub struct Series {
     /// Name in the legend.
     pub name: String,
+    /// Number of its color; there are [`COLORS`](super::COLORS), then they repeat.
+    pub color: usize,
     /// Points, x ascending; points that are not finite interrupt the line.
     pub points: Vec<[f64; 2]>,
 }
@@ -94,9 +97,9 @@ impl Plot {
         let [x, y] = [0, 1].map(|i: usize| Axis::new(bounds(points().map(|p| p[i]))));
         let axes = Axes { x, y };
         axes.begin(out, &self.title, &self.x_label, &self.y_label)?;
-        for (i, series) in self.series.iter().enumerate() {
+        for series in &self.series {
             for part in series.points.split(|p| !is_finite(p)).filter(|p| p.len() > 1) {
-                write!(out, "<polyline class=\"series s{}\" points=\"", i % 4)?;
+                write!(out, "<polyline class=\"series s{}\" points=\"", series.color % COLORS)?;
                 for p in part {
                     let [x, y] = axes.place(*p);
                     write!(out, "{x:.1},{y:.1} ")?;
@@ -105,8 +108,8 @@ impl Plot {
             }
         }
         writeln!(out, "</svg>\n<div class=\"legend\">")?;
-        for (i, series) in self.series.iter().enumerate() {
-            writeln!(out, "<span><i class=\"c{}\"></i>{}</span>", i % 4, escape(&series.name))?;
+        for Series { name, color, .. } in &self.series {
+            writeln!(out, "<span><i class=\"c{}\"></i>{}</span>", color % COLORS, escape(name))?;
         }
         writeln!(out, "</div></figure>")
     }
