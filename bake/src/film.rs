@@ -23,7 +23,7 @@ const VIEW: (f32, f32) = (0.62, 0.18);
 const ASPECTS: [f32; 7] = [0.7, 0.85, 1.0, 1.2, 1.4, 1.6, 1.8];
 
 /// Length of a round of the built-in shake, s.
-const SHAKE_ROUND: f32 = 2.0;
+pub(crate) const SHAKE_ROUND: f32 = 2.0;
 
 /// Azimuth of a character's front, radians: +Z by glTF's convention, -Z for VRM 0.
 #[must_use]
@@ -167,7 +167,8 @@ impl<'a> Film<'a> {
         &self.survey.moments
     }
 
-    /// Writes a looping GIF of what `player` still has to play. `drawn` is called for each frame that was played.
+    /// Writes a looping GIF of what `player` still has to play, with at most `most` frames a second (at most
+    /// [`MAX_GIF_FPS`](render::MAX_GIF_FPS)). `drawn` is called for each frame that was played.
     ///
     /// # Errors
     ///
@@ -176,10 +177,11 @@ impl<'a> Film<'a> {
         &self,
         out: W,
         player: &mut Player<'_>,
+        most: f32,
         looks: &[(&str, Look)],
         mut drawn: impl FnMut(),
     ) -> io::Result<W> {
-        let stride = gif_stride(player.fps);
+        let stride = gif_stride(player.fps, most);
         #[allow(clippy::cast_precision_loss, reason = "a small number")]
         let fps = player.fps / stride as f32;
         // The palette is to suit moments from all over the run.

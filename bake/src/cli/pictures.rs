@@ -4,7 +4,7 @@ use super::play::{Arguments, Run, Summary, every};
 use super::progress;
 use sinew_bake::film::{Film, Look, Survey};
 use sinew_bake::play::Player;
-use sinew_bake::render::write_png;
+use sinew_bake::render::{MAX_GIF_FPS, write_png};
 use sinew_bake::{Error, Model, export};
 
 /// Columns of a contact sheet.
@@ -34,7 +34,9 @@ pub(super) fn gif(arguments: &Arguments, run: &mut Run<'_>) -> Result<Summary, E
     let (film, summary) = survey(arguments, run)?;
     let mut player = run.player()?;
     let bar = progress::bar("draw", u64::from(player.frames));
-    export::write_atomic(&arguments.out, |file| film.gif(file, &mut player, looks, || bar.inc(1)).map(drop))?;
+    export::write_atomic(&arguments.out, |file| {
+        film.gif(file, &mut player, MAX_GIF_FPS, looks, || bar.inc(1)).map(drop)
+    })?;
     bar.finish_and_clear();
     Ok(summary)
 }

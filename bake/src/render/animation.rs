@@ -16,12 +16,13 @@ const BITS: u32 = 7;
 /// Not yet looked up.
 const UNKNOWN: u16 = u16::MAX;
 
-/// How many frames to go on for each that is kept, so that at most [`MAX_GIF_FPS`] remain: 2 for 60 frames a
-/// second. Hand `fps / stride` to [`GifWriter::new`].
+/// How many frames to go on for each that is kept, so that at most `most` a second remain: 2 for 60 of at most 50.
+/// Hand `fps / stride` to [`GifWriter::new`].
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
-pub fn gif_stride(fps: f32) -> u32 {
-    (libm::ceilf(fps / MAX_GIF_FPS) as u32).max(1)
+pub fn gif_stride(fps: f32, most: f32) -> u32 {
+    // A rate that is a hair above the limit by rounding is not halved.
+    (libm::ceilf(fps / most - 1e-4) as u32).max(1)
 }
 
 /// Writes a GIF frame by frame, looping forever.
@@ -65,7 +66,7 @@ impl<W: Write> GifWriter<W> {
         let [Ok(width @ 1..), Ok(height @ 1..)] = size.map(u16::try_from) else {
             return Err(invalid("1 to 65535 pixels across are possible"));
         };
-        if !(fps > 0.0 && fps <= MAX_GIF_FPS) {
+        if !(fps > 0.0 && fps <= MAX_GIF_FPS * 1.001) {
             return Err(invalid("frames a second must be above 0 and at most 50"));
         }
         let pixels: Vec<u8> =
@@ -254,6 +255,6 @@ mod tests {
         }
         let mut writer = GifWriter::new(Vec::new(), &picture, 30.0).expect("usable");
         assert!(writer.push(&RgbImage::new(64, 47)).is_err(), "another size");
-        assert_eq!([24.0, 50.0, 60.0, 120.0, 240.0].map(gif_stride), [1, 1, 2, 3, 5]);
+        assert_eq!([24.0, 50.0, 60.0, 120.0, 240.0].map(|fps| gif_stride(fps, MAX_GIF_FPS)), [1, 1, 2, 3, 5]);
     }
 }

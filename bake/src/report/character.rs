@@ -28,7 +28,7 @@ const PALETTE: [[u8; 3]; COLORS] = [
     [0x6b, 0x6f, 0x7a],
 ];
 
-/// Writes `index.html` into `folder`: the first clip, where the flesh is from three sides, regions, sizes.
+/// Writes `index.html` into `folder`: the liveliest clip, where the flesh is from three sides, regions, sizes.
 ///
 /// # Errors
 ///
@@ -74,11 +74,10 @@ fn facts(asset: &Asset<'_>) -> Vec<Fact> {
     let memory = 4 * Character::required_len(asset) as u64;
     [
         ("vertices", grouped(m.vertices.into())),
-        ("points with flesh", format!("{} of {}", grouped(m.active.into()), grouped(m.points.into()))),
+        ("points with flesh", grouped(m.active.into())),
         ("joints", grouped(m.joints.into())),
         ("asset", kilobytes(bytes)),
         ("memory of a character", kilobytes(memory)),
-        ("content hash", format!("{:016x}", asset.hash)),
     ]
     .map(|(name, value)| Fact { name: name.to_owned(), value })
     .into()
@@ -94,7 +93,7 @@ fn places(model: &Model, flesh: &Flesh) -> Section {
             image: Image::Still(rest.draw(front(model) + azimuth, show)),
             caption: format!("{what}, {name}"),
         };
-        Block::Pictures(VIEWS.map(picture).into())
+        Block::Views(VIEWS.map(picture).into())
     };
     let soft = flesh.softness.iter().filter(|s| **s > 0.0).map(|s| f64::from(*s));
     Section {
@@ -166,8 +165,19 @@ fn contents(asset: &Asset<'_>) -> Section {
         value: kilobytes(size),
         share: size as f64 / most as f64,
     };
+    let rows = [
+        ("content hash", format!("{:016x}", asset.hash)),
+        ("points, equal vertices counted once", grouped(m.points.into())),
+        ("vertices whose normals turn with the flesh", grouped(m.lit.into())),
+        ("influences a point", m.stride.to_string()),
+        ("clips", m.clips.to_string()),
+    ]
+    .map(|(name, value)| [name.to_owned(), value]);
     let bars = kinds.into_iter().zip(sizes).map(bar).collect();
-    Section { heading: "What the asset holds".to_owned(), blocks: vec![Block::Bars(bars)] }
+    Section {
+        heading: "What the asset holds".to_owned(),
+        blocks: vec![Block::Bars(bars), Block::Rows(rows.into())],
+    }
 }
 
 fn kind(part: Part) -> usize {

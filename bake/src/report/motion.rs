@@ -1,8 +1,8 @@
-//! A character's first clip: moving pictures, a contact sheet, and how far each region goes.
+//! A character's liveliest clip: moving pictures, moments, and how far each region goes.
 
 use super::{Block, COLORS, Image, Picture, Plot, Section, Series};
-use crate::film::{Film, Look, Survey};
-use crate::play::{Frame, Player, Settings};
+use crate::film::{Film, Look, SHAKE_ROUND, Survey};
+use crate::play::{Frame, Motion, Player, Settings};
 use crate::recipe::{Flesh, Region};
 use crate::{Error, Model};
 use image::{RgbImage, imageops};
@@ -10,7 +10,11 @@ use sinew::kernel::spring::{Response, Spring};
 use sinew::{Asset, Character};
 
 /// Height of pictures, pixels.
-const HEIGHT: u32 = 300;
+const HEIGHT: u32 = 360;
+/// Frames a second of moving pictures, at most.
+const GIF_FPS: f32 = 20.0;
+/// Clips that are tried.
+const MOST_CLIPS: usize = 24;
 /// Moments of the contact sheet.
 const MOMENTS: u32 = 5;
 /// Longest run, s: the page is to stay small.
@@ -18,11 +22,16 @@ const LONGEST: f32 = 4.0;
 /// Lines of a plot.
 const LINES: usize = 6;
 
-/// Plays the first clip (or the built-in shake) and shows it.
+/// Plays the clips (or the built-in shake) and shows the one that moves flesh most.
 pub(super) fn section(model: &Model, flesh: &Flesh, asset: Asset<'_>) -> Result<Section, Error> {
-    let round = model.clips.first().map(|c| c.duration).filter(|d| *d > 0.1);
-    let settings = Settings { seconds: Some(round.unwrap_or(LONGEST).min(LONGEST)), ..Settings::default() };
     let mut memory = vec![0.0; Character::required_len(&asset)];
+    let tried = tried(model, asset, &mut memory)?;
+    // The first among equals.
+    let liveliest = tried.iter().fold(None, |best: Option<&Tried>, t| match best {
+        Some(best) if best.largest >= t.largest => Some(best),
+        _ => Some(t),
+    });
+    let settings = liveliest.map_or_else(shake, |t| t.settings.clone());
     let mut player = Player::new(model, asset, &mut memory, &settings)?;
     let (name, fps) = (player.motion.name().to_owned(), player.fps);
     let mut survey = Survey::new(model, &player, MOMENTS);
@@ -36,33 +45,86 @@ pub(super) fn section(model: &Model, flesh: &Flesh, asset: Asset<'_>) -> Result<
     }
     let hottest = 100.0 * survey.hottest;
     let film = Film::new(model, survey, HEIGHT);
+    let mut player = Player::new(model, asset, &mut memory, &settings)?;
+    let mut blocks = vec![Block::Pictures(vec![moving(&film, &mut player)?])];
+    blocks.extend(strips(&film, hottest));
+    blocks.push(Block::Plot(offsets(flesh, lines)));
+    if tried.len() > 1 {
+        let row = |t: &Tried| {
+            let cells = [t.name.clone(), format!("{:.2}", t.length), format!("{:.1}", 100.0 * t.largest)];
+            (None, cells.into())
+        };
+        let columns =
+            ["clip", "length, s", "farthest from skinning, % of the body"].map(str::to_owned).into();
+        blocks.push(Block::Table { columns, rows: tried.iter().map(row).collect() });
+    }
+    Ok(Section { heading: format!("In motion: {name}"), blocks })
+}
+
+/// What playing a clip showed.
+struct Tried {
+    name: String,
+    length: f32,
+    largest: f32,
+    settings: Settings,
+}
+
+fn shake() -> Settings {
+    Settings { seconds: Some(LONGEST), ..Settings::default() }
+}
+
+/// Plays each clip, the first [`MOST_CLIPS`].
+fn tried(model: &Model, asset: Asset<'_>, memory: &mut [f32]) -> Result<Vec<Tried>, Error> {
+    let mut out = Vec::new();
+    for clip in model.clips.iter().take(MOST_CLIPS) {
+        let seconds = if clip.duration > 0.0 { clip.duration.min(LONGEST) } else { 1.0 };
+        let settings =
+            Settings { clip: Some(clip.name.clone()), seconds: Some(seconds), ..Settings::default() };
+        let mut player = Player::new(model, asset, memory, &settings)?;
+        let mut largest = 0.0_f32;
+        while let Some(frame) = player.next()? {
+            largest = frame.heat.iter().copied().fold(largest, f32::max);
+        }
+        out.push(Tried { name: clip.name.clone(), length: clip.duration, largest, settings });
+    }
+    Ok(out)
+}
+
+/// Skinning and sinew side by side, as a GIF.
+fn moving(film: &Film<'_>, player: &mut Player<'_>) -> Result<Picture, Error> {
     let looks = [("skinning", Look::Skinning), ("sinew", Look::Flesh)];
-    let gif = film
-        .gif(Vec::new(), &mut Player::new(model, asset, &mut memory, &settings)?, &looks, || ())
-        .map_err(|e| Error::unusable(model.name.as_str(), "report", e.to_string(), "leave --report out"))?;
+    let name = player.motion.name().to_owned();
+    if player.motion == Motion::Shake {
+        // The second round goes over into itself.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small number")]
+        let round = (SHAKE_ROUND * player.fps) as u32;
+        for _ in round..player.frames {
+            player.next()?;
+        }
+    }
+    let gif = film.gif(Vec::new(), player, GIF_FPS, &looks, || ());
+    let gif =
+        gif.map_err(|e| Error::unusable(name.as_str(), "report", e.to_string(), "leave --report out"))?;
     let [width, height] = film.size();
-    let strip = |look: Look, caption: String| {
-        Block::Strip(Picture {
-            image: Image::Still(joined(&film.draw_all(film.moments(), &[("", look)]))),
-            caption,
-        })
-    };
+    let caption = format!("{name}: skinning alone at the left, sinew at the right");
+    Ok(Picture { image: Image::Gif(gif, [2 * width, height]), caption })
+}
+
+/// The same moments in three looks.
+fn strips(film: &Film<'_>, hottest: f32) -> [Block; 3] {
     let moments: Vec<String> = film.moments().iter().map(|f| format!("{:.2}", f.time)).collect();
-    let at = format!("at {} s", moments.join(", "));
-    let blocks = vec![
-        Block::Pictures(vec![Picture {
-            image: Image::Gif(gif, [2 * width, height]),
-            caption: format!("{name}: skinning alone at the left, sinew at the right"),
-        }]),
-        strip(Look::Skinning, format!("Skinning alone, {at}")),
-        strip(Look::Flesh, "sinew at the same moments".to_owned()),
-        strip(
+    [
+        (Look::Skinning, format!("Skinning alone, at {} s", moments.join(", "))),
+        (Look::Flesh, "sinew at the same moments".to_owned()),
+        (
             Look::Heat,
             format!("How far the two are apart: grey not at all, dark purple {hottest:.1} % of the body"),
         ),
-        Block::Plot(offsets(flesh, lines)),
-    ];
-    Ok(Section { heading: format!("In motion: {name}"), blocks })
+    ]
+    .map(|(look, caption)| {
+        let image = Image::Still(joined(&film.draw_all(film.moments(), &[("", look)])));
+        Block::Strip(Picture { image, caption })
+    })
 }
 
 /// Greatest distance from skinning in each region, body sizes.

@@ -64,6 +64,8 @@ pub enum Block {
     Bars(Vec<Bar>),
     /// Pictures beside each other where there is room.
     Pictures(Vec<Picture>),
+    /// Views of one thing: beside each other on any screen.
+    Views(Vec<Picture>),
     /// A picture so wide that a small screen scrolls it.
     Strip(Picture),
     /// Lines over an axis.
@@ -169,15 +171,18 @@ impl Block {
                 picture.write_to(out)?;
                 writeln!(out, "</div>")
             }
-            Self::Pictures(pictures) => {
-                writeln!(out, "<div class=\"pictures\">")?;
-                pictures.iter().try_for_each(|p| p.write_to(out))?;
-                writeln!(out, "</div>")
-            }
+            Self::Pictures(pictures) => write_pictures(out, "pictures", pictures),
+            Self::Views(pictures) => write_pictures(out, "pictures views", pictures),
             Self::Plot(plot) => plot.write_to(out),
             Self::Histogram(histogram) => histogram.write_to(out),
         }
     }
+}
+
+fn write_pictures(out: &mut impl Write, class: &str, pictures: &[Picture]) -> io::Result<()> {
+    writeln!(out, "<div class=\"{class}\">")?;
+    pictures.iter().try_for_each(|p| p.write_to(out))?;
+    writeln!(out, "</div>")
 }
 
 fn write_bars(out: &mut impl Write, bars: &[Bar]) -> io::Result<()> {
@@ -222,7 +227,10 @@ impl Picture {
             }
         };
         let caption = escape(&self.caption);
-        write!(out, "<figure><img width=\"{width}\" height=\"{height}\" alt=\"{caption}\" ")?;
+        // Moving pictures are coarse: they are not stretched far.
+        let limit =
+            if kind == "gif" { format!(" style=\"max-width:{}px\"", width * 5 / 4) } else { String::new() };
+        write!(out, "<figure{limit}><img width=\"{width}\" height=\"{height}\" alt=\"{caption}\" ")?;
         write!(out, "src=\"data:image/{kind};base64,{}\">", STANDARD.encode(bytes))?;
         writeln!(out, "<figcaption>{caption}</figcaption></figure>")
     }
@@ -269,6 +277,7 @@ mod tests {
                 rows: vec![(Some(2), vec!["tail".to_owned(), "2.5".to_owned()])],
             },
             Block::Pictures(vec![picture.clone()]),
+            Block::Views(vec![picture.clone()]),
             Block::Strip(picture),
             Block::List(vec!["<b>".to_owned()]),
             Block::Bars(vec![Bar { name: "a & b".to_owned(), value: "1 kB".to_owned(), share: 0.5 }]),
