@@ -122,7 +122,7 @@ fn hostile_surfaces_are_drawn_without_what_is_broken() {
 fn a_real_character_is_drawn_alike_on_any_number_of_threads() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/khronos/Fox.glb");
     if !path.exists() {
-        assert!(std::env::var("CI").is_err(), "{} is missing", path.display());
+        assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", path.display());
         println!("skipped: {} is missing", path.display());
         return;
     }

@@ -40,7 +40,11 @@ pub fn character(model: &Model, flesh: &Flesh, asset: &[u32], folder: &Path) -> 
     })?;
     fs::create_dir_all(folder).map_err(|source| Error::Write { path: folder.to_owned(), source })?;
     let mut sections = vec![motion::section(model, flesh, asset)?];
-    sections.extend([places(model, flesh), regions(flesh), contents(&asset)]);
+    sections.push(places(model, flesh));
+    if has_flesh(flesh) {
+        sections.push(regions(flesh));
+    }
+    sections.push(contents(&asset));
     if !flesh.notes.is_empty() {
         sections
             .push(Section { heading: "Notes".to_owned(), blocks: vec![Block::List(flesh.notes.clone())] });
@@ -50,22 +54,24 @@ pub fn character(model: &Model, flesh: &Flesh, asset: &[u32], folder: &Path) -> 
     report.write(&folder.join("index.html"))
 }
 
+fn has_flesh(flesh: &Flesh) -> bool {
+    flesh.softness.iter().any(|s| *s > 0.0)
+}
+
 fn summary(model: &Model, flesh: &Flesh) -> String {
     let names: Vec<&str> = flesh.regions.iter().map(|r| r.name.as_str()).collect();
     let symmetric = if flesh.mirror.is_some() { ", the same at the left and at the right" } else { "" };
-    let clips = match model.clips.len() {
-        0 => "no clips".to_owned(),
-        1 => "one clip".to_owned(),
-        n => format!("{n} clips"),
+    let count = |n: usize, what: &str| match n {
+        0 => format!("no {what}s"),
+        1 => format!("one {what}"),
+        _ => format!("{n} {what}s"),
     };
-    match names.as_slice() {
-        [] => format!("No flesh was found: this character follows its bones. It has {clips}."),
-        _ => format!(
-            "Flesh was found in {} regions ({}){symmetric}. It has {clips}.",
-            names.len(),
-            names.join(", ")
-        ),
+    let clips = count(model.clips.len(), "clip");
+    if !has_flesh(flesh) {
+        return format!("No flesh was found: this character follows its bones. It has {clips}.");
     }
+    let regions = count(names.len(), "region");
+    format!("Flesh was found in {regions} ({}){symmetric}. It has {clips}.", names.join(", "))
 }
 
 fn facts(asset: &Asset<'_>) -> Vec<Fact> {

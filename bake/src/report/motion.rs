@@ -13,6 +13,8 @@ use sinew::{Asset, Character};
 const HEIGHT: u32 = 360;
 /// Frames a second of moving pictures, at most.
 const GIF_FPS: f32 = 20.0;
+/// Clips that are listed.
+const CLIP_ROWS: usize = 12;
 /// Clips that are tried.
 const MOST_CLIPS: usize = 24;
 /// Moments of the contact sheet.
@@ -50,13 +52,7 @@ pub(super) fn section(model: &Model, flesh: &Flesh, asset: Asset<'_>) -> Result<
     blocks.extend(strips(&film, hottest));
     blocks.push(Block::Plot(offsets(flesh, lines)));
     if tried.len() > 1 {
-        let row = |t: &Tried| {
-            let cells = [t.name.clone(), format!("{:.2}", t.length), format!("{:.1}", 100.0 * t.largest)];
-            (None, cells.into())
-        };
-        let columns =
-            ["clip", "length, s", "farthest from skinning, % of the body"].map(str::to_owned).into();
-        blocks.push(Block::Table { columns, rows: tried.iter().map(row).collect() });
+        blocks.extend(clips(tried, model.clips.len()));
     }
     Ok(Section { heading: format!("In motion: {name}"), blocks })
 }
@@ -67,6 +63,23 @@ struct Tried {
     length: f32,
     largest: f32,
     settings: Settings,
+}
+
+/// The clips that move flesh most.
+fn clips(mut tried: Vec<Tried>, all: usize) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    if tried.len() < all {
+        blocks.push(Block::Text(format!("Of {all} clips the first {} were tried.", tried.len())));
+    }
+    tried.sort_by(|a, b| b.largest.total_cmp(&a.largest));
+    tried.truncate(CLIP_ROWS);
+    let row = |t: &Tried| {
+        let cells = [t.name.clone(), format!("{:.2}", t.length), format!("{:.1}", 100.0 * t.largest)];
+        (None, cells.into())
+    };
+    let columns = ["clip", "length, s", "farthest from skinning, % of the body"].map(str::to_owned).into();
+    blocks.push(Block::Table { columns, rows: tried.iter().map(row).collect() });
+    blocks
 }
 
 fn shake() -> Settings {

@@ -206,7 +206,7 @@ fn write_table(out: &mut impl Write, columns: &[String], rows: &Rows) -> io::Res
     for (color, row) in rows {
         write!(out, "<tr>")?;
         for (i, cell) in row.iter().enumerate() {
-            let number = cell.starts_with(|c: char| c.is_ascii_digit() || "+-.−<≤".contains(c));
+            let number = cell.replace(',', "").parse::<f64>().is_ok();
             let class = if number { " class=\"number\"" } else { "" };
             let dot = color.filter(|_| i == 0).map(|c| format!("<i class=\"dot c{}\"></i>", c % COLORS));
             write!(out, "<td{class}>{}{}</td>", dot.unwrap_or_default(), escape(cell))?;
