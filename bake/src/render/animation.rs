@@ -1,6 +1,6 @@
 //! Animated pictures (GIF): one palette for all frames, and only what changes.
 
-use color_quant::NeuQuant;
+use super::palette::Palette;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use image::RgbImage;
 use std::borrow::Cow;
@@ -11,10 +11,6 @@ pub const MAX_GIF_FPS: f32 = 50.0;
 /// Colors; one index is left for "as before".
 const COLORS: usize = 255;
 const UNCHANGED: u8 = 255;
-/// Bits a channel of the table of nearest colors.
-const BITS: u32 = 7;
-/// Not yet looked up.
-const UNKNOWN: u16 = u16::MAX;
 
 /// How many frames to go on for each that is kept, so that at most `most` a second remain: 2 for 60 of at most 50.
 /// Hand `fps / stride` to [`GifWriter::new`].
@@ -30,8 +26,7 @@ pub fn gif_stride(fps: f32, most: f32) -> u32 {
 /// Colors are dithered by a pattern that stands still, so that what does not move takes no space.
 pub struct GifWriter<W: Write> {
     encoder: Encoder<W>,
-    palette: NeuQuant,
-    nearest: Vec<u16>,
+    palette: Palette,
     size: [u32; 2],
     fps: f32,
     written: u32,
@@ -69,16 +64,13 @@ impl<W: Write> GifWriter<W> {
         if !(fps > 0.0 && fps <= MAX_GIF_FPS * 1.001) {
             return Err(invalid("frames a second must be above 0 and at most 50"));
         }
-        let pixels: Vec<u8> =
-            samples.iter().flat_map(RgbImage::pixels).flat_map(|p| [p.0[0], p.0[1], p.0[2], 255]).collect();
-        // One pixel in 10, but all of a small picture.
-        let palette = NeuQuant::new(if pixels.len() > 400_000 { 10 } else { 1 }, COLORS, &pixels);
-        let mut colors = palette.color_map_rgb();
-        colors.extend([0; 3]);
+        let pixels: Vec<[u8; 3]> = samples.iter().flat_map(RgbImage::pixels).map(|p| p.0).collect();
+        let palette = Palette::new(&pixels, COLORS);
+        let mut colors = palette.rgb();
+        colors.resize(3 * (COLORS + 1), 0);
         let mut encoder = Encoder::new(writer, width, height, &colors).map_err(io_error)?;
         encoder.set_repeat(Repeat::Infinite).map_err(io_error)?;
-        let nearest = vec![UNKNOWN; 1 << (3 * BITS)];
-        Ok(Self { encoder, palette, nearest, size, fps, written: 0, before: Vec::new() })
+        Ok(Self { encoder, palette, size, fps, written: 0, before: Vec::new() })
     }
 
     /// Appends a frame.
@@ -140,12 +132,7 @@ impl<W: Write> GifWriter<W> {
     fn index(&mut self, color: [u8; 3], x: u32, y: u32) -> u8 {
         let shift = dither(x, y);
         let color = color.map(|c| u8::try_from((i32::from(c) + shift).clamp(0, 255)).unwrap_or(0));
-        let key = color.iter().fold(0, |key, c| key << BITS | usize::from(*c) >> (8 - BITS));
-        if self.nearest[key] == UNKNOWN {
-            let [r, g, b] = color;
-            self.nearest[key] = u16::try_from(self.palette.index_of(&[r, g, b, 255])).unwrap_or(0);
-        }
-        u8::try_from(self.nearest[key]).unwrap_or(0)
+        self.palette.index(color)
     }
 
     /// The rectangle `[left, top, width, height]` of what differs from the frame before; never empty.

@@ -12,6 +12,7 @@ mod camera;
 mod color;
 mod figure;
 mod light;
+mod palette;
 mod raster;
 mod scene;
 mod shade;

@@ -66,6 +66,62 @@ fn a_ball_is_lit_from_above_and_throws_a_shadow() {
 }
 
 #[test]
+fn the_silhouette_is_where_projection_says() {
+    let ball = Ball::new();
+    let camera = ball.camera();
+    let size = 200_u16;
+    let image = render(&[ball.surface(RED)], &camera, size.into(), size.into());
+    let (mut inside, mut near) = (0, 0);
+    for y in 0..size {
+        for x in 0..size {
+            let [u, v] = [x, y].map(|k| (f32::from(k) + 0.5) / f32::from(size));
+            // Distance from the middle of the ball to the line of sight.
+            let miss = camera.eye.cross(camera.ray(u, v).normalize()).length();
+            let [r, g, _] = image.get_pixel(x.into(), y.into()).0;
+            let red = u32::from(r) > 2 * u32::from(g);
+            // The ball has corners: a little within its radius its faces may or may not cover a pixel.
+            match miss {
+                m if m < 0.97 => assert!(red, "a hole at {x}, {y}"),
+                m if m > 1.02 => assert!(!red, "too large at {x}, {y}"),
+                _ => near += 1,
+            }
+            inside += u32::from(red);
+        }
+    }
+    assert!(inside > 15_000 && near < 2_500, "{inside} pixels of the ball, {near} undecided");
+}
+
+#[test]
+fn the_shadow_lies_away_from_the_lamp_and_under_the_ball() {
+    let ball = Ball::new();
+    let camera = ball.camera();
+    let (empty, image) = (render(&[], &camera, 160, 160), render(&[ball.surface(RED)], &camera, 160, 160));
+    let dark = |x: u32, y: u32| f64::from(sum(&empty, [x, y])) - f64::from(sum(&image, [x, y]));
+    // Along the ground in front of the ball: the lamp stands at the left.
+    let (mut left, mut right) = (0.0, 0.0);
+    for y in 128..160 {
+        (0..80).for_each(|x| left += dark(x, y));
+        (80..160).for_each(|x| right += dark(x, y));
+    }
+    assert!(right > 1.1 * left && left > 0.0, "left {left}, right {right}");
+}
+
+#[test]
+fn the_same_picture_is_the_same_bytes() {
+    let ball = Ball::new();
+    let draw = || {
+        let mut png = Vec::new();
+        let image = render(&[ball.surface(RED)], &ball.camera(), 97, 61);
+        encode_png(&image, &mut png).expect("memory");
+        png
+    };
+    let (first, second) = (draw(), draw());
+    assert_eq!(first, second);
+    let digest = sinew::math::digest::of_bytes(&first);
+    assert!(image::load_from_memory(&first).is_ok(), "{digest:016x}");
+}
+
+#[test]
 fn the_inner_side_is_drawn_only_where_it_should() {
     let mut ball = Ball::new();
     ball.triangles.retain(|t| t.iter().all(|&i| ball.points[i as usize][2] < 0.2));

@@ -125,6 +125,8 @@ fn bounds(values: impl Iterator<Item = f64>) -> [f64; 2] {
     match (low <= high, high > low) {
         (false, _) => [0.0, 1.0],
         (true, true) => [low, high],
+        // Nothing but zeros: an axis in thousandths would promise too much.
+        (true, false) if low.abs() < 1e-12 => [0.0, 1.0],
         (true, false) => [low - 0.5 * low.abs().max(1e-9), high + 0.5 * high.abs().max(1e-9)],
     }
 }
