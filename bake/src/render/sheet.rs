@@ -15,8 +15,6 @@ const PALE_INK: [u8; 3] = [104, 112, 124];
 const GAP: u32 = 6;
 /// Space around everything, px.
 const MARGIN: u32 = 24;
-/// Height of the label in a picture, px.
-const TAG: u32 = 28;
 
 /// Frames to put on one picture.
 #[derive(Clone, Debug, Default)]
@@ -80,7 +78,7 @@ pub fn contact_sheet(sheet: &Sheet) -> RgbImage {
         for (i, image) in (0..columns).zip(&row.cells) {
             imageops::replace(&mut page, image, i64::from(MARGIN + i * (cell[0] + GAP)), i64::from(y));
         }
-        tag(&mut page, [MARGIN + 10, y + cell[1].saturating_sub(TAG + 10)], &row.label);
+        tag(&mut page, [MARGIN, y], cell[1], &row.label);
     }
     if let Some(legend) = &sheet.legend {
         let y = page.height() - bottom + 12;
@@ -98,7 +96,7 @@ pub fn side_by_side(panels: &[(&str, &RgbImage)]) -> RgbImage {
     let mut x = 0;
     for (label, panel) in panels {
         imageops::replace(&mut out, *panel, i64::from(x), 0);
-        tag(&mut out, [x + 12, height.saturating_sub(TAG + 12)], label);
+        tag(&mut out, [x, 0], height, label);
         if x > 0 {
             (0..height).for_each(|y| blend(&mut out, [x, y], [255; 3], 200));
         }
@@ -107,19 +105,22 @@ pub fn side_by_side(panels: &[(&str, &RgbImage)]) -> RgbImage {
     out
 }
 
-/// A label on a pale ground.
-fn tag(image: &mut RgbImage, [x, y]: [u32; 2], label: &str) {
+/// A label on a pale ground, in the lower left corner of a picture `height` px high whose upper left is at `x`, `y`.
+fn tag(image: &mut RgbImage, [x, y]: [u32; 2], height: u32, label: &str) {
     if label.is_empty() {
         return;
     }
-    let (width, height) = (LABEL.width(label) + 16, TAG);
-    for j in 0..height {
-        for i in 0..width {
-            let corner = (i == 0 || i + 1 == width) && (j == 0 || j + 1 == height);
+    // Feet are there too: small pictures have small labels.
+    let (font, pad) = if height >= 320 { (LABEL, 8) } else { (NOTE, 4) };
+    let size = [font.width(label) + 2 * pad, font.height() + pad];
+    let [x, y] = [x + pad, (y + height).saturating_sub(size[1] + pad)];
+    for j in 0..size[1] {
+        for i in 0..size[0] {
+            let corner = (i == 0 || i + 1 == size[0]) && (j == 0 || j + 1 == size[1]);
             blend(image, [x + i, y + j], [255; 3], if corner { 60 } else { 190 });
         }
     }
-    LABEL.write(image, [x + 8, y + 3], label, INK);
+    font.write(image, [x + pad, y + pad / 2 - 1], label, INK);
 }
 
 /// The colors of a heat map from cold to hot.
