@@ -34,19 +34,28 @@ fn a_page_shows_motion_places_regions_and_sizes_and_loads_nothing() {
 }
 
 #[test]
-fn characters_without_clips_and_without_flesh_have_a_page_too() {
-    let folder = Folder::new("page-bare");
-    if !folder.fetch("godette-vrm/Godette_vrm_v4.vrm", "g.vrm") {
+fn a_character_without_clips_is_shaken_and_notes_are_told() {
+    let folder = Folder::new("page-shaken");
+    if !folder.fetch("vrm1-springbone/swing_springbone_stiffness_0p2.vrm", "swing.vrm") {
         return;
     }
-    folder.good("bake g.vrm -o g.sinew --report page");
-    let shaken = page(&folder);
-    assert!(shaken.contains("In motion: built-in shake") && shaken.contains("VRM spring bones"), "a note");
+    folder.good("bake swing.vrm -o swing.sinew --report page");
+    let page = page(&folder);
+    assert!(page.contains("In motion: built-in shake") && page.contains("It has no clips"), "it is shaken");
+    assert!(page.contains("<h2>Notes</h2>") && page.contains("VRM spring bones"), "what the recipe noted");
+}
+
+#[test]
+fn a_character_without_flesh_has_a_page_too() {
+    let folder = Folder::new("page-rigid");
+    if !folder.fox() {
+        return;
+    }
     folder.write("rigid.toml", "softness = 0.0");
-    folder.good("bake builtin -o p.sinew --recipe rigid.toml --report page");
-    let rigid = page(&folder);
-    assert!(rigid.contains("No flesh was found"), "the summary says so");
-    let texts = rigid.split("base64,").map(|part| part.split_once('"').map_or(part, |(_, rest)| rest));
+    folder.good("bake fox.glb -o p.sinew --recipe rigid.toml --report page");
+    let page = page(&folder);
+    assert!(page.contains("No flesh was found"), "the summary says so");
+    let texts = page.split("base64,").map(|part| part.split_once('"').map_or(part, |(_, rest)| rest));
     let texts: String = texts.collect();
-    assert!(!texts.contains("NaN") && !texts.contains("inf%") && !texts.contains(">inf"), "{texts}");
+    assert!(!texts.contains("NaN") && !texts.contains("inf%") && !texts.contains(">inf<"), "{texts}");
 }
