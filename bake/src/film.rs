@@ -45,19 +45,19 @@ pub struct Survey {
 
 impl Survey {
     /// Prepares for the frames of `player`, which plays `model`; `columns` moments are kept for the contact sheet,
-    /// from the last round of a motion that repeats.
+    /// from the last round of a motion that goes over into itself, from the first of any other.
     #[must_use]
     pub fn new(model: &Model, player: &Player<'_>, columns: u32) -> Self {
-        let round = match &player.motion {
-            Motion::Clip { duration, looped: true, .. } => *duration,
-            Motion::Clip { .. } => f32::INFINITY,
-            Motion::Shake => SHAKE_ROUND,
+        let (round, steady) = match &player.motion {
+            Motion::Clip { duration, looped, .. } if *duration > 0.0 => (*duration, *looped),
+            Motion::Clip { .. } => (f32::INFINITY, false),
+            Motion::Shake => (SHAKE_ROUND, true),
         };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
         let span = (libm::roundf(round * player.fps) as u32).clamp(1, player.frames.max(1));
         let columns = columns.clamp(1, span);
         let moment = |k: u32| u64::from(k) * u64::from(span) / u64::from(columns);
-        let first = player.frames - span;
+        let first = if steady { player.frames - span } else { 0 };
         let wanted = (0..columns).map(|k| first + u32::try_from(moment(k)).unwrap_or(span)).collect();
         Self {
             framings: ASPECTS.map(|a| (a, Framing::new(a, front(model) + VIEW.0, VIEW.1))),
@@ -229,4 +229,48 @@ impl<'a> Film<'a> {
 fn ticks(most: f32) -> Vec<String> {
     let digits = if most >= 10.0 { 0 } else { 1 };
     (0..5_u8).map(|i| format!("{:.digits$}", most * f32::from(i) / 4.0)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::play::Settings;
+    use crate::{builtin, pack, recipe};
+    use sinew::{Asset, Character};
+
+    /// Times of the moments that a survey of the built-in character keeps.
+    fn moments(seconds: f32, columns: u32) -> Vec<f32> {
+        let model = builtin::character();
+        let flesh = recipe::flesh(&model, &recipe::Recipe::default()).expect("it has flesh");
+        let words = pack::align(&pack::pack(&model, &flesh, 0).expect("it is packed"));
+        let asset = Asset::parse(bytemuck::cast_slice(&words)).expect("an asset");
+        let mut memory = vec![0.0; Character::required_len(&asset)];
+        let settings = Settings { seconds: Some(seconds), fps: 30.0, ..Settings::default() };
+        let mut player = Player::new(&model, asset, &mut memory, &settings).expect("it plays");
+        let mut survey = Survey::new(&model, &player, columns);
+        while let Some(frame) = player.next().expect("a frame") {
+            survey.add(&model, frame);
+        }
+        let film = Film::new(&model, survey, 100);
+        let inside = |p: &[f32; 3]| {
+            let size = film.size().map(|s| u16::try_from(s).map_or(0.0, f32::from));
+            let at = film.camera.project(*p, size).expect("before the camera");
+            (0..2).all(|i| at[i] > 0.05 * size[i] && at[i] < 0.95 * size[i])
+        };
+        assert!(film.moments().iter().flat_map(|f| &f.flesh).all(inside), "all of it is in the picture");
+        film.moments().iter().map(|f| f.time).collect()
+    }
+
+    #[test]
+    fn moments_are_spread_over_one_round() {
+        // The clip takes a second.
+        for seconds in [1.0, 3.0] {
+            let times = moments(seconds, 5);
+            assert_eq!(times.len(), 5);
+            for (k, t) in (0_u8..).zip(&times) {
+                assert!((t - 0.2 * f32::from(k)).abs() < 0.01, "{times:?} of {seconds} s");
+            }
+        }
+        assert_eq!(moments(0.1, 6).len(), 3, "no more moments than frames");
+    }
 }
