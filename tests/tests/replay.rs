@@ -338,7 +338,7 @@ fn causes_are_told_when_they_are_known() {
     assert_eq!((found.frame, found.stage, found.cause), (0, Some(Stage::Skin), Cause::Unknown));
     bytes[kernel] += 1;
     reseal(&mut bytes, kernel, 2, u64::MAX, HeaderField::KernelVersion.index());
-    let cause = Cause::Kernel { recorded: KERNEL_VERSION + 1, here: KERNEL_VERSION };
+    let cause = Cause::Kernel { recorded: u64::from(KERNEL_VERSION) + 1, here: KERNEL_VERSION };
     assert_eq!(difference(&bytes).cause, cause);
     assert_eq!(Replay::parse(&bytes).expect("inputs are whole").suspect(), Some(cause));
     assert_eq!(Replay::parse(&recorded(0)).expect("a whole replay").suspect(), None);
