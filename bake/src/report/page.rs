@@ -4,7 +4,7 @@
 //! readable on a phone, in light and dark, printed, and without JavaScript.
 
 use super::COLORS;
-use super::svg::{Histogram, Plot};
+use super::svg::{Histogram, Plot, escape};
 use crate::render::encode_png;
 use crate::{Error, export};
 use base64::Engine as _;
@@ -234,24 +234,6 @@ impl Picture {
         write!(out, "src=\"data:image/{kind};base64,{}\">", STANDARD.encode(bytes))?;
         writeln!(out, "<figcaption>{caption}</figcaption></figure>")
     }
-}
-
-/// Text as it may stand in HTML, also within quotes.
-pub(super) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            // Control characters are not HTML.
-            c if c.is_control() && c != '\n' => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 #[cfg(test)]

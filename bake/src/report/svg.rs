@@ -1,7 +1,6 @@
 //! Plots as SVG that takes its colors from the page.
 
 use super::COLORS;
-use super::page::escape;
 use std::io::{self, Write};
 
 /// Size of a plot and of the frame within it, user units.
@@ -217,6 +216,24 @@ impl Axes {
             "<text transform=\"translate(12 {half}) rotate(-90)\" text-anchor=\"middle\">{y_label}</text>"
         )
     }
+}
+
+/// Text as it may stand in HTML, also within quotes.
+pub(super) fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            // Control characters are not HTML.
+            c if c.is_control() && c != '\n' => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
 }
 
 #[cfg(test)]
