@@ -4,7 +4,7 @@ use super::{Outcome, load};
 use core::hint::black_box;
 use serde_json::{Value, json};
 use sinew::kernel::spring::{Knots, Spring, Step, advance};
-use sinew::{Character, Root};
+use sinew::{Character, Pose, Root, step_batch};
 use sinew_bake::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -14,7 +14,9 @@ const ROUNDS: u32 = 60;
 /// Points of the spring benchmark.
 const POINTS: usize = 10_000;
 /// Names that can be asked for.
-const NAMES: [&str; 3] = ["springs", "skin", "character-frame"];
+const NAMES: [&str; 4] = ["springs", "skin", "character-frame", "batch"];
+/// Sizes of the batches.
+const CROWDS: [usize; 3] = [1, 16, 128];
 
 pub(super) fn run(name: Option<&str>) -> Result<Outcome, Error> {
     if let Some(name) = name.filter(|n| !NAMES.contains(n)) {
@@ -32,7 +34,10 @@ pub(super) fn run(name: Option<&str>) -> Result<Outcome, Error> {
         results.push(springs());
     }
     if wanted("skin") || wanted("character-frame") {
-        results.extend(character(wanted)?);
+        results.extend(character(&wanted)?);
+    }
+    if wanted("batch") {
+        results.extend(batches()?);
     }
     let lines = results.iter().map(line).collect();
     let json = json!({"machine": machine(), "results": results});
@@ -96,7 +101,7 @@ fn springs() -> Value {
 }
 
 /// CPU skinning with normals, and a whole frame, of the built-in character.
-fn character(wanted: impl Fn(&str) -> bool) -> Result<Vec<Value>, Error> {
+fn character(wanted: &impl Fn(&str) -> bool) -> Result<Vec<Value>, Error> {
     let path = Path::new("builtin");
     let model = load::character(path)?;
     let aligned = load::asset(&model, None)?;
@@ -127,4 +132,36 @@ fn character(wanted: impl Fn(&str) -> bool) -> Result<Vec<Value>, Error> {
             "peers": [], "limit": 0.25}));
     }
     Ok(out)
+}
+
+/// Batches of the built-in character: what a vertex costs must not depend on how many there are.
+fn batches() -> Result<Vec<Value>, Error> {
+    let path = Path::new("builtin");
+    let model = load::character(path)?;
+    let aligned = load::asset(&model, None)?;
+    CROWDS.iter().map(|count| batch(path, &aligned, *count)).collect()
+}
+
+fn batch(path: &Path, aligned: &[u32], count: usize) -> Result<Value, Error> {
+    let refuse = |e: String| Error::unusable("bench", "batch", e, "please report this");
+    let asset = load::parse(path, aligned)?;
+    let vertices = count * asset.meta.vertices as usize;
+    let mut memories = vec![vec![0.0; Character::required_len(&asset)]; count];
+    let crowd = memories
+        .iter_mut()
+        .map(|m| Character::new(load::parse(path, aligned)?, m).map_err(|e| refuse(e.to_string())));
+    let mut crowd = crowd.collect::<Result<Vec<_>, Error>>()?;
+    let mut bones = vec![sinew::math::affine::IDENTITY; asset.joint_from_bind.len()];
+    let mut failed = None;
+    let value = best(vertices, || {
+        bones.iter_mut().for_each(|b| b[3][0] = 0.01 - b[3][0]);
+        let poses = vec![Pose { root: Root::default(), root_from_joint: &bones }; count];
+        let stepped = step_batch(&mut crowd, &poses, 1.0 / 60.0);
+        failed = stepped.map_or_else(|e| Some(e.to_string()), |b| b.refusal.map(|(_, e)| e.to_string()));
+    });
+    if let Some(error) = failed {
+        return Err(refuse(error));
+    }
+    Ok(json!({"name": "batch", "case": format!("{count} characters"), "value": value, "unit": "ns/vertex",
+        "peers": []}))
 }
