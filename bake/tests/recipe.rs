@@ -107,6 +107,93 @@ fn the_bunny_has_a_soft_belly_and_ears_and_rigid_hands_feet_and_face() {
     assert!(softest(&places, |p| (0.47..0.55).contains(&p.y) && p.x.abs() < 0.1 && p.z > 0.1) == 0.0, "face");
 }
 
+/// The same with the smallest coordinates at the origin.
+fn from_corner(places: &[(DVec3, f32)]) -> Vec<(DVec3, f32)> {
+    let corner = places.iter().map(|(p, _)| *p).reduce(DVec3::min).expect("there are vertices");
+    places.iter().map(|(p, s)| (*p - corner, *s)).collect()
+}
+
+#[test]
+fn a_rat_has_soft_ears_though_they_hang_on_its_neck() {
+    let Some(model) = character("quaternius/Rat.glb") else { return };
+    let flesh = auto(&model);
+    let places = from_corner(&places(&model, &flesh));
+    let ear = |p: DVec3| p.y > 0.24 && p.z > 0.72;
+    assert!(softest(&places, |p| ear(p) && p.x < 0.1) > 0.5, "right ear");
+    assert!(softest(&places, |p| ear(p) && p.x > 0.1) > 0.5, "left ear");
+    assert!(
+        softest(&places, |p| p.y > 0.253 && p.z > 0.72) > softest(&places, |p| ear(p) && p.y < 0.245),
+        "tip"
+    );
+    assert!(softest(&places, |p| p.z > 0.84) == 0.0, "snout");
+    assert!(
+        softest(&places, |p| p.y < 0.01) == 0.0 || softest(&places, |p| p.y < 0.01 && p.z > 0.4) == 0.0,
+        "feet"
+    );
+    assert!(flesh.regions.iter().any(|r| r.name == "ear"), "{:?}", flesh.regions);
+}
+
+#[test]
+fn ears_of_people_are_a_little_soft_and_their_faces_rigid() {
+    for body in ["f_average", "f_curvy", "f_heavy", "m_average", "m_heavy"] {
+        let Some(model) = character(&format!("makehuman/mh_{body}.glb")) else { continue };
+        let places = places(&model, &auto(&model));
+        let head = |p: DVec3| p.y > 0.74;
+        let ears = softest(&places, |p| head(p) && p.x.abs() > 0.033);
+        assert!((0.05..0.4).contains(&ears), "{body}: ears {ears}");
+        assert!(softest(&places, |p| head(p) && p.x.abs() < 0.028) == 0.0, "{body}: face");
+    }
+}
+
+#[test]
+fn a_puffer_is_a_body_with_a_tail() {
+    let Some(model) = character("quaternius/Puffer.glb") else { return };
+    let flesh = auto(&model);
+    let places = from_corner(&places(&model, &flesh));
+    let middle = |p: DVec3| (0.2..0.36).contains(&p.x);
+    assert!(softest(&places, |p| middle(p) && p.y < 0.08 && p.z > 0.3) > 0.8, "belly");
+    assert!(softest(&places, |p| middle(p) && p.z < 0.05) > 0.9, "tail fin");
+    let names: Vec<&str> = flesh.regions.iter().map(|r| r.name.as_str()).collect();
+    assert_eq!(names, ["flesh", "tail"], "regions");
+    let body = flesh.region.iter().zip(&flesh.softness).filter(|(r, s)| **r == 0 && **s > 0.0).count();
+    assert!(2 * body > flesh.region.len(), "only {body} vertices of flesh");
+}
+
+#[test]
+fn ears_of_a_coarse_fox_do_not_reach_its_cheeks() {
+    let Some(model) = character("khronos/Fox.glb") else { return };
+    let places = from_corner(&places(&model, &auto(&model)));
+    assert!(extreme(&places, DVec3::Y) > 0.8, "tip");
+    let cheek = |p: DVec3| (0.3..0.38).contains(&p.y) && (0.72..0.75).contains(&p.z);
+    assert!(softest(&places, cheek) < 0.1, "cheek");
+}
+
+#[test]
+fn a_backpack_is_rigid() {
+    let Some(model) = character("godette-vrm/Godette_vrm_v4.vrm") else { return };
+    let flesh = auto(&model);
+    let mut v = 0;
+    let mut worn = 0;
+    for primitive in &model.primitives {
+        let joints = primitive.joints.chunks_exact(primitive.stride);
+        for (joints, weights) in joints.zip(primitive.weights.chunks_exact(primitive.stride)) {
+            let name = |j: &u16| model.nodes[model.joints[usize::from(*j)].node].name.as_str();
+            let share: f32 = joints
+                .iter()
+                .zip(weights)
+                .filter(|(j, _)| name(j).starts_with("backpack"))
+                .map(|(_, w)| w)
+                .sum();
+            if share > 0.99 {
+                assert!(flesh.softness[v] < 0.05, "vertex {v} of the backpack is {} soft", flesh.softness[v]);
+                worn += 1;
+            }
+            v += 1;
+        }
+    }
+    assert!(worn > 100, "only {worn} vertices");
+}
+
 #[test]
 fn a_heavy_body_is_softest_at_the_belly() {
     let Some(model) = character("makehuman/mh_f_heavy.glb") else { return };
@@ -114,7 +201,7 @@ fn a_heavy_body_is_softest_at_the_belly() {
     let front = |low: f64, high: f64| softest(&places, move |p| (low..high).contains(&p.y) && p.z > 0.02);
     assert!(front(0.44, 0.55) > 0.8, "belly");
     assert!(softest(&places, |p| (0.36..0.44).contains(&p.y) && p.z < -0.02) > 0.2, "buttocks");
-    assert!(softest(&places, |p| p.y > 0.74) == 0.0, "head");
+    assert!(softest(&places, |p| p.y > 0.74 && p.x.abs() < 0.03) == 0.0, "head");
     assert!(softest(&places, |p| p.y < 0.1) == 0.0, "feet");
     assert!(softest(&places, |p| p.x.abs() > 0.21) == 0.0, "hands");
 }
@@ -151,7 +238,7 @@ fn all_characters_are_finite_and_do_not_tear() {
         for (a, b) in edges(&model) {
             let length = rest[a].distance(rest[b]) / flesh.body_size;
             let jump = f64::from((flesh.softness[a] - flesh.softness[b]).abs());
-            assert!(jump <= 1e-6 + 90.0 * length, "{file}: softness jumps by {jump} over {length}");
+            assert!(jump <= 1e-6 + 30.0 * length, "{file}: softness jumps by {jump} over {length}");
             let both = flesh.softness[a].min(flesh.softness[b]);
             let same = flesh.region[a] == flesh.region[b];
             assert!(same || both == 0.0, "{file}: regions meet at softness {both}, vertices {a} and {b}");

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::flap;
 use super::mirror::Symmetry;
 use super::protrusion::{self, Protrusion};
 use super::skeleton::{Part, Skeleton};
@@ -35,6 +36,8 @@ pub(super) struct Field {
     pub(super) protrusions: Vec<Protrusion>,
     /// Depth of the deepest flesh, body sizes.
     pub(super) depth: f64,
+    /// Points of the skull, ears left out.
+    pub(super) skull: Vec<bool>,
     /// Share of each point that is on a limb.
     pub(super) limb: Vec<f64>,
 }
@@ -55,10 +58,14 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetr
         label: vec![Label::Body; count],
         protrusions: Vec::new(),
         depth,
+        skull: Vec::new(),
         limb: vec![0.0; count],
     };
     let skull = skeleton.share(surface, &skeleton.skull);
     let head: Vec<bool> = skull.iter().map(|s| *s > 0.5).collect();
+    // Files may give ears to the neck.
+    let neck = skeleton.share(surface, &skeleton.neck);
+    let neck: Vec<bool> = neck.iter().map(|s| *s > 0.5).collect();
     for (i, p) in surface.points.iter().enumerate() {
         let (mut body, mut best) = (0.0, (0.5, Label::Body));
         for (bone, w) in frame.bones(&surface.weights[i]) {
@@ -86,15 +93,20 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetr
         field.soft[i] += body * frame.side(*p);
     }
     field.protrusions = protrusion::find(surface, symmetry, &head);
+    let mut taken = vec![false; count];
+    field.protrusions.iter().flat_map(|p| &p.points).for_each(|(i, _)| taken[*i] = true);
+    field.protrusions.extend(flap::find(surface, symmetry, skeleton.front, &neck, &taken));
     for (k, protrusion) in field.protrusions.iter().enumerate() {
         for (i, place) in &protrusion.points {
-            let soft = ease(0.0, 0.95, *place);
+            let soft = protrusion.peak * ease(0.0, 0.95, *place);
             if soft > field.soft[*i] {
                 field.soft[*i] = soft;
             }
             field.label[*i] = Label::Protrusion(k);
         }
     }
+    let rigid = |i: usize| head[i] && field.label[i] == Label::Body && field.soft[i] == 0.0;
+    field.skull = (0..count).map(rigid).collect();
     field
 }
 
@@ -183,7 +195,7 @@ impl<'a> Frame<'a> {
     }
 
     fn flesh(&self, bone: usize, p: DVec3, depth: f64) -> f64 {
-        if self.skeleton.limb_length.is_empty() && !self.skeleton.chains.is_empty() {
+        if self.skeleton.stalk && !self.skeleton.chains.is_empty() {
             return 0.0; // A tail alone: the root holds it.
         }
         ease(SHALLOW * depth, depth, self.distance(bone, p))

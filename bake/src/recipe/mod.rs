@@ -11,6 +11,7 @@
 
 mod anatomy;
 mod field;
+mod flap;
 mod grid;
 mod mirror;
 mod protrusion;
@@ -68,7 +69,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     symmetry.average(&mut field.soft);
     let pieces = smooth::pieces(&surface);
     let mut soft = field.soft.clone();
-    smooth::even(&surface, &mut soft);
+    smooth::even(&surface, &field.skull, &mut soft);
     let mut regions = Regions::new(&skeleton, &field, &symmetry, &pieces);
     let shares = region::shares(model, &surface, recipe);
     let mut notes = Vec::new();
@@ -77,10 +78,10 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     smooth::limit_slope(&surface, &mut soft);
     smooth::fade_borders(&surface, &regions.of, &mut soft);
     smooth::unite(&pieces, &mut soft);
-    symmetry.average(&mut soft);
     leave_springs(model, &surface, &mut soft, &mut notes);
+    smooth::limit_slope(&surface, &mut soft);
+    symmetry.average(&mut soft);
     regions.split_limbs(&surface, &field, recipe, &soft);
-    regions.drop_unused();
     let was_painted = painted.iter().flatten().count();
     if was_painted > 0 {
         notes.push(format!("{was_painted} points have painted softness"));
@@ -88,6 +89,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     for (soft, painted) in soft.iter_mut().zip(painted) {
         *soft = painted.unwrap_or(*soft);
     }
+    regions.drop_unused(&soft);
     #[expect(clippy::cast_possible_truncation, reason = "softness is f32")]
     let softness = surface.point_of.iter().map(|p| soft[*p] as f32).collect();
     Ok(Flesh {
