@@ -99,6 +99,7 @@ pub(super) fn classify(skeleton: &mut Skeleton, surface: &Surface, symmetry: &Sy
             set_chain(skeleton, surface, end, false);
         } else if worn(skeleton, surface, end) {
             set(skeleton, end, Part::Rigid);
+            skeleton.worn.extend(skeleton.subtree(end));
         } else if skeleton.start(end) < CONTROL {
             set(skeleton, end, Part::Flesh);
         }

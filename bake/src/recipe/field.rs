@@ -36,8 +36,8 @@ pub(super) struct Field {
     pub(super) protrusions: Vec<Protrusion>,
     /// Depth of the deepest flesh, body sizes.
     pub(super) depth: f64,
-    /// Points of the skull, ears left out.
-    pub(super) skull: Vec<bool>,
+    /// Points of the skull (but for ears) and of what is worn: flesh beside them does not soften them.
+    pub(super) rigid: Vec<bool>,
     /// Share of each point that is on a limb.
     pub(super) limb: Vec<f64>,
 }
@@ -58,7 +58,7 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetr
         label: vec![Label::Body; count],
         protrusions: Vec::new(),
         depth,
-        skull: Vec::new(),
+        rigid: Vec::new(),
         limb: vec![0.0; count],
     };
     let skull = skeleton.share(surface, &skeleton.skull);
@@ -105,8 +105,10 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetr
             field.label[*i] = Label::Protrusion(k);
         }
     }
-    let rigid = |i: usize| head[i] && field.label[i] == Label::Body && field.soft[i] == 0.0;
-    field.skull = (0..count).map(rigid).collect();
+    let worn = skeleton.share(surface, &skeleton.worn);
+    let rigid =
+        |i: usize| (head[i] || worn[i] > 0.5) && field.label[i] == Label::Body && field.soft[i] == 0.0;
+    field.rigid = (0..count).map(rigid).collect();
     field
 }
 

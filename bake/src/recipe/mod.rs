@@ -69,7 +69,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     symmetry.average(&mut field.soft);
     let pieces = smooth::pieces(&surface);
     let mut soft = field.soft.clone();
-    smooth::even(&surface, &field.skull, &mut soft);
+    smooth::even(&surface, &field.rigid, &mut soft);
     let mut regions = Regions::new(&skeleton, &field, &symmetry, &pieces);
     let shares = region::shares(model, &surface, recipe);
     let mut notes = Vec::new();
