@@ -9,6 +9,8 @@
 //! All lengths inside are in body sizes, so that a model scaled 0.01 or 100 has the same flesh. Softness is
 //! computed per welded point: vertices that a file splits get the same bits.
 
+#![doc = include_str!("../../../docs/recipe.md")]
+
 mod anatomy;
 mod field;
 mod flap;
@@ -32,6 +34,9 @@ use region::Regions;
 pub use rules::{Recipe, Rule};
 use skeleton::Skeleton;
 use surface::Surface;
+
+/// The manual: regions, keys of a recipe with units and defaults, and what cannot be told; Markdown.
+pub const MANUAL: &str = include_str!("../../../docs/recipe.md");
 
 /// Where flesh is and how it swings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! What a person may wish: paint and rules.
 
 use glam::DVec3;
-use sinew_bake::recipe::{Recipe, flesh};
+use sinew_bake::recipe::{MANUAL, Recipe, flesh};
 
 use super::{auto, character, extreme, places, refusal};
 
@@ -68,5 +68,22 @@ fn bad_recipes_are_refused_by_name() {
     for (text, place) in cases {
         let error = Recipe::from_toml("r.toml", text).expect_err(text).to_string();
         assert!(error.starts_with("r.toml: ") && error.contains(place), "{text:?}: {error}");
+    }
+}
+
+#[test]
+fn the_manual_has_every_key() {
+    let text =
+        MANUAL.split("```toml").nth(1).and_then(|t| t.split("```").next()).expect("a recipe in the manual");
+    let recipe = Recipe::from_toml("manual", text).expect("a good recipe");
+    let defaults = Recipe { file: recipe.file.clone(), rules: recipe.rules.clone(), ..Recipe::default() };
+    assert_eq!(recipe, defaults, "the manual's values are the defaults");
+    let of_rules = serde_json::to_value(&recipe.rules[0]).expect("a rule is data");
+    let given = of_rules.as_object().expect("keys").iter();
+    let missing: Vec<&String> = given.filter(|(_, value)| value.is_null()).map(|(key, _)| key).collect();
+    assert!(missing.is_empty(), "keys of a rule that the manual leaves out: {missing:?}");
+    let all = serde_json::to_value(&recipe).expect("a recipe is data");
+    for key in all.as_object().expect("keys").keys().filter(|k| *k != "rule") {
+        assert!(text.contains(&format!("\n{key} = ")), "the manual leaves out {key}");
     }
 }
