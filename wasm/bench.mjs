@@ -1,4 +1,5 @@
 // bench.mjs [--json]: what the runtime costs under WebAssembly, with the peers in the same run.
+// `cargo xtask bench` builds what it needs and runs it.
 import { readFileSync } from 'node:fs';
 import { isMainThread, parentPort, Worker, workerData } from 'node:worker_threads';
 
@@ -19,10 +20,12 @@ function best(task, items) {
 
 /** The spring stage and CPU skinning of one build, in a thread of its own. */
 async function measure({ build, asset: bytes }) {
-  const glue = await import('./pkg/sinew.js');
+  const stages = await import('./pkg-bench/sinew.js');
   const { Asset, Character, initSync } = await import('./js/index.js');
-  initSync(readFileSync(new URL(`./pkg/sinew_${build}_bg.wasm`, import.meta.url)));
-  const springs = new glue.BenchSprings(SPRINGS);
+  const read = (folder) => readFileSync(new URL(`./${folder}/sinew_${build}_bg.wasm`, import.meta.url));
+  stages.initSync({ module: read('pkg-bench') });
+  initSync(read('pkg'));
+  const springs = new stages.BenchSprings(SPRINGS);
   const asset = new Asset(bytes);
   const character = new Character(asset);
   for (let frame = 0; frame < 10; frame++) character.stepClip(0, frame / 60, 1 / 60);

@@ -12,7 +12,7 @@ use sinew_bake::{builtin, pack};
 /// Content hash of the built-in character's asset.
 const ASSET: u64 = 0x7e21_2de4_dba3_d411;
 /// Digest of the 600 frames.
-const REPLAY: u64 = 0x6d7c_6672_f8d5_f67b;
+const REPLAY: u64 = 0x6533_e686_d1ec_93a0;
 /// Frames.
 const FRAMES: u32 = 600;
 

@@ -211,6 +211,20 @@ export declare class Character {
   free(): void;
 }
 
+/** What became of a batch. */
+export interface Batch {
+  /** How many characters advanced: their buffers are new. */
+  advanced: number;
+  /** Those refused, which are as they were. */
+  refusals: { index: number; error: Error }[];
+}
+
+/**
+ * {@link Character.step} on each of many characters, their poses and roots being filled in. One that
+ * is refused holds up no other.
+ */
+export declare function stepBatch(characters: readonly Character[], dt: number): Batch;
+
 /** What verifying a replay found. */
 export interface Verdict {
   /** Whether every frame came out the same, to the bit. */

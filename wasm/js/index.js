@@ -2,6 +2,7 @@ import { floatEnvironment as rawFloatEnvironment, version as rawVersion } from '
 import { memory } from './load.js';
 
 export { Asset } from './asset.js';
+export { stepBatch } from './batch.js';
 export { Character } from './character.js';
 export { init, initSync, simd } from './load.js';
 export { verify } from './replay.js';

@@ -5,6 +5,7 @@
 //! frame allocates nothing on either side, and no `unsafe` is needed.
 
 pub mod asset;
+#[cfg(feature = "bench")]
 pub mod bench;
 pub mod character;
 mod memory;

@@ -7,8 +7,16 @@ use anyhow::{Context, Result};
 use crate::{process, report, workspace};
 
 /// Everything made in the checkout that is not in the repository.
-const MADE: [&str; 7] =
-    ["wasm/pkg", "wasm/pkg.new", "wasm/node_modules", "www/dist", "www/artifacts", "www/node_modules", "out"];
+const MADE: [&str; 8] = [
+    "wasm/pkg",
+    "wasm/pkg-bench",
+    "wasm/pkg.new",
+    "wasm/node_modules",
+    "www/dist",
+    "www/artifacts",
+    "www/node_modules",
+    "out",
+];
 
 /// Removes build products, npm packages and outputs.
 ///

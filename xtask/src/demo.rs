@@ -39,7 +39,7 @@ pub(crate) fn run(headless: bool, port: u16) -> Result<()> {
     Ok(())
 }
 
-/// `cargo xtask bench`: `sinew bench`, optimized.
+/// `cargo xtask bench`: `sinew bench`, optimized; without arguments also `wasm/bench.mjs`.
 ///
 /// # Errors
 ///
@@ -50,6 +50,15 @@ pub(crate) fn bench(arguments: &[String]) -> Result<()> {
     let status = sinew.arg("bench").args(arguments).stdin(Stdio::inherit()).status()?;
     if !status.success() {
         bail!("`sinew bench`: {status}");
+    }
+    if !arguments.is_empty() {
+        return Ok(());
+    }
+    wasm::build_bench()?;
+    let mut node = process::command("node", &workspace::root().join("wasm"));
+    let status = node.arg("bench.mjs").stdin(Stdio::inherit()).status()?;
+    if !status.success() {
+        bail!("`node bench.mjs`: {status}");
     }
     Ok(())
 }

@@ -58,9 +58,9 @@ enum Chore {
         #[arg(long, default_value_t = 8080)]
         port: u16,
     },
-    /// Measure: `sinew bench`, optimized.
+    /// Measure, natively and under wasm.
     Bench {
-        /// Passed on to `sinew bench`.
+        /// Passed on to `sinew bench`; without any, wasm is measured too.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },

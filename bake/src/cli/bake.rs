@@ -25,7 +25,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let bar = progress("bake", 4);
+    let bar = progress::bar("bake", 4);
     let model = load::character(&arguments.input)?;
     bar.inc(1);
     let recipe = match &arguments.recipe {

@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         Error::unusable(arguments.file.display().to_string(), "replay", problem, "record it again")
     };
     let mut character = Character::new(asset, &mut memory).map_err(|e| refuse(e.to_string()))?;
-    let bar = progress("verify", replay.finished().frames);
+    let bar = progress::bar("verify", replay.finished().frames);
     let verdict = verify(&mut character, &replay, Extent::FirstDifference, |done, _| bar.set_position(done));
     bar.finish_and_clear();
     let name = arguments.file.display();

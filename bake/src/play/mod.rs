@@ -50,6 +50,17 @@ pub enum Motion {
     Shake,
 }
 
+impl Motion {
+    /// The clip's name, or what the shake is called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Clip { name, .. } => name,
+            Self::Shake => "built-in shake",
+        }
+    }
+}
+
 /// One frame of a character, model space.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
@@ -192,6 +203,12 @@ impl<'a> Player<'a> {
     #[must_use]
     pub fn character(&self) -> &Character<'a> {
         &self.character
+    }
+
+    /// What is played, for people: clip, number of frames, rate.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        format!("{}, {} frames at {} Hz", self.motion.name(), self.frames, self.fps)
     }
 
     /// The pose of frame `i`: time in the clip and root.
