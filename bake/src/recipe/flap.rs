@@ -39,6 +39,8 @@ struct Disc {
     middle: DVec3,
     /// Skin by hole.
     ratio: f64,
+    /// Volume over the hole: mouths and nostrils leave a small hole too, but go inwards.
+    volume: f64,
     /// Farthest from the rest of the head, body sizes.
     length: f64,
     /// Place of each point from base (0) to tip (1).
@@ -61,10 +63,13 @@ pub(super) fn find(
     let ahead = |i: usize| surface.points[i].z * front;
     let (back, nose) = inside().map(ahead).fold((f64::MAX, f64::MIN), |(a, b), z| (a.min(z), b.max(z)));
     let free = |i: usize| head[i] && !taken[i];
+    let skin: Vec<usize> = (0..head.len()).filter(|i| surface.shell[*i] == own).collect();
+    let outward = volume(surface, skin.iter().copied(), surface.points[skin[0]]);
     let mut discs: Vec<Disc> = tips(surface, &head)
         .into_iter()
         .filter(|i| free(*i) && ahead(*i) < back + FACE * (nose - back))
         .flat_map(|tip| grow(surface, symmetry, tip, MOST * all, &free))
+        .filter(|disc| disc.volume * outward > 0.0)
         .collect();
     discs.sort_by(|a, b| (b.ratio * b.length).total_cmp(&(a.ratio * a.length)));
     let mut used = vec![false; head.len()];
@@ -172,16 +177,20 @@ fn disc(surface: &Surface, symmetry: &Symmetry, points: &[usize], ratio: f64) ->
     let middle = mean(&|i| symmetry.centered[i], &area);
     let hole = mean(&|i| surface.points[i], &|i| if start[i].is_finite() { 1.0 } else { 0.0 });
     let off = mean(&|i| surface.points[i], &area).distance(hole);
-    // Mouths and nostrils leave a small hole too, but go inwards.
-    let volume: f64 = points.iter().map(|i| (surface.points[*i] - hole).dot(surface.vector[*i])).sum();
     let aside = points.iter().all(|i| symmetry.centered[*i][symmetry.axis] * middle[symmetry.axis] > 0.0);
-    (length >= SHORTEST && aside && volume > 0.0 && off > OFF * length && length.is_finite()).then(|| Disc {
+    (length >= SHORTEST && aside && off > OFF * length && length.is_finite()).then(|| Disc {
         points: points.to_vec(),
         middle,
         ratio,
+        volume: volume(surface, points.iter().copied(), hole),
         length,
         places: points.iter().map(|i| way[*i] / length).collect(),
     })
+}
+
+/// Three times the volume between some points' skin and `from`; negative inside a surface that is inside out.
+fn volume(surface: &Surface, points: impl Iterator<Item = usize>, from: DVec3) -> f64 {
+    points.map(|i| (surface.points[i] - from).dot(surface.vector[i])).sum()
 }
 
 /// Points in the order of their way from `tip`, up to an area.
