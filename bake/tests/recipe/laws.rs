@@ -134,3 +134,22 @@ fn degenerate_models_are_refused_or_finite() {
         assert!(flesh.body_size < 10.0, "a vertex without triangle does not count for the size");
     }
 }
+
+#[test]
+fn a_mirror_image_has_the_same_ears() {
+    let Some(model) = character("quaternius/Rat.glb") else { return };
+    let mut image = model.clone();
+    for node in image.nodes.iter_mut().filter(|n| n.parent.is_none()) {
+        node.translation.x = -node.translation.x;
+        node.scale.x = -node.scale.x;
+        let q = node.rotation;
+        node.rotation = glam::DQuat::from_xyzw(q.x, -q.y, -q.z, q.w);
+    }
+    let softest_ear = |model: &Model| {
+        let flesh = auto(model);
+        let ear = flesh.regions.iter().position(|r| r.name == "ear").expect("ears");
+        let soft = flesh.region.iter().zip(&flesh.softness).filter(|(r, _)| usize::from(**r) == ear);
+        soft.map(|(_, s)| *s).fold(0.0, f32::max)
+    };
+    assert!((softest_ear(&model) - softest_ear(&image)).abs() < 0.01, "the mirror image has other ears");
+}
