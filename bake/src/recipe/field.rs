@@ -63,9 +63,6 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetr
     };
     let skull = skeleton.share(surface, &skeleton.skull);
     let head: Vec<bool> = skull.iter().map(|s| *s > 0.5).collect();
-    // Files may give ears to the neck.
-    let neck = skeleton.share(surface, &skeleton.neck);
-    let neck: Vec<bool> = neck.iter().map(|s| *s > 0.5).collect();
     for (i, p) in surface.points.iter().enumerate() {
         let (mut body, mut best) = (0.0, (0.5, Label::Body));
         for (bone, w) in frame.bones(&surface.weights[i]) {
@@ -92,24 +89,34 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetr
         // Tails are as soft on all sides, bodies are not.
         field.soft[i] += body * frame.side(*p);
     }
-    field.protrusions = protrusion::find(surface, symmetry, &head);
-    let mut taken = vec![false; count];
-    field.protrusions.iter().flat_map(|p| &p.points).for_each(|(i, _)| taken[*i] = true);
-    field.protrusions.extend(flap::find(surface, symmetry, skeleton.front, &neck, &taken));
-    for (k, protrusion) in field.protrusions.iter().enumerate() {
-        for (i, place) in &protrusion.points {
-            let soft = protrusion.peak * ease(0.0, 0.95, *place);
-            if soft > field.soft[*i] {
-                field.soft[*i] = soft;
-            }
-            field.label[*i] = Label::Protrusion(k);
-        }
-    }
+    field.stick_out(surface, skeleton, symmetry, &head);
     let worn = skeleton.share(surface, &skeleton.worn);
     let rigid =
         |i: usize| (head[i] || worn[i] > 0.5) && field.label[i] == Label::Body && field.soft[i] == 0.0;
     field.rigid = (0..count).map(rigid).collect();
     field
+}
+
+impl Field {
+    /// Softens ears, horns and tufts that have no joints.
+    fn stick_out(&mut self, surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetry, head: &[bool]) {
+        // Files may give ears to the neck.
+        let neck = skeleton.share(surface, &skeleton.neck);
+        let neck: Vec<bool> = neck.iter().map(|s| *s > 0.5).collect();
+        self.protrusions = protrusion::find(surface, symmetry, head);
+        let mut taken = vec![false; head.len()];
+        self.protrusions.iter().flat_map(|p| &p.points).for_each(|(i, _)| taken[*i] = true);
+        self.protrusions.extend(flap::find(surface, symmetry, skeleton.front, &neck, &taken));
+        for (k, protrusion) in self.protrusions.iter().enumerate() {
+            for (i, place) in &protrusion.points {
+                let soft = protrusion.peak * ease(0.0, 0.95, *place);
+                if soft > self.soft[*i] {
+                    self.soft[*i] = soft;
+                }
+                self.label[*i] = Label::Protrusion(k);
+            }
+        }
+    }
 }
 
 /// Bones with the segments that flesh is measured from.
