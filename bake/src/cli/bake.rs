@@ -9,6 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = sinew_bake::recipe::MANUAL)]
 pub(super) struct Arguments {
     /// A rigged .glb, .gltf or .vrm; `builtin` is the character that comes with sinew
     input: PathBuf,

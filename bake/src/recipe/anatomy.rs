@@ -17,7 +17,13 @@ const SHORTEST: f64 = 0.03;
 /// Smallest ratio of length to width of an ear or tail.
 const ELONGATED: f64 = 0.6;
 
-/// The same for a head.
+/// Share by which a branch holds what is worn.
+const WHOLE: f64 = 0.9;
+/// A character without limbs whose ratio of length to width is smaller has a body, else it is all tail.
+const BULKY: f64 = 1.2;
+/// Bones that hold more of a body without limbs are its trunk.
+const BODY: f64 = 0.35;
+/// Share of its reach by which a head's middle must be off its base.
 const HEAD_OFF_BASE: f64 = 0.19;
 /// A branch that starts farther than this from the joint above (body sizes) is no control inside the flesh.
 const CONTROL: f64 = 0.1;
@@ -74,10 +80,13 @@ pub(super) fn classify(skeleton: &mut Skeleton, surface: &Surface, symmetry: &Sy
     for &limb in &limbs {
         set_limb(skeleton, surface, limb, branches[limb].lowest < GROUND);
     }
-    if skeleton.bones.len() == 1 {
+    let bulky = limbs.is_empty() && branches[top].elongation() < BULKY;
+    skeleton.stalk = limbs.is_empty() && !bulky;
+    if skeleton.bones.len() == 1 && !bulky {
         return set_chain(skeleton, surface, top, false);
     }
-    let ends = ends(skeleton, &branches, top, &limbs);
+    let body = if bulky { body(skeleton, &branches, top) } else { top };
+    let ends = ends(skeleton, &branches, body, &limbs);
     let head = head(skeleton, &branches, &ends, &limbs);
     for end in ends {
         let branch = branches[end];
@@ -88,10 +97,26 @@ pub(super) fn classify(skeleton: &mut Skeleton, surface: &Surface, symmetry: &Sy
             set_limb(skeleton, surface, end, branch.lowest < GROUND);
         } else if branch.elongation() > ELONGATED && (branch.protrudes() || limbs.is_empty()) {
             set_chain(skeleton, surface, end, false);
+        } else if worn(skeleton, surface, end) {
+            set(skeleton, end, Part::Rigid);
+            skeleton.worn.extend(skeleton.subtree(end));
         } else if skeleton.start(end) < CONTROL {
             set(skeleton, end, Part::Flesh);
         }
     }
+}
+
+/// Whether a branch holds whole shells and no skin of others: a bag, a shield.
+fn worn(skeleton: &Skeleton, surface: &Surface, end: usize) -> bool {
+    let share = skeleton.share(surface, &skeleton.subtree(end));
+    let mut held = vec![(0.0, 0.0); surface.shells];
+    for (i, shell) in surface.shell.iter().enumerate() {
+        held[*shell].0 += share[i] * surface.area[i];
+        held[*shell].1 += surface.area[i];
+    }
+    let all: f64 = held.iter().map(|(part, _)| part).sum();
+    let whole: f64 = held.iter().filter(|(part, shell)| *part > WHOLE * shell).map(|(part, _)| part).sum();
+    whole > WHOLE * all
 }
 
 /// Arms and legs: paired branches that reach the ground, or far, within two places along the spine.
@@ -116,19 +141,25 @@ fn limbs(skeleton: &Skeleton, branches: &[Branch], top: usize) -> Vec<usize> {
     limbs
 }
 
+/// The last bone of a body without limbs: what hangs below is less than a third of it.
+fn body(skeleton: &Skeleton, branches: &[Branch], top: usize) -> usize {
+    let most = |b: &usize| branches[*b].area > BODY * branches[top].area;
+    skeleton.subtree(top).into_iter().filter(most).max_by_key(|b| skeleton.bones[*b].depth).unwrap_or(top)
+}
+
 /// Branches of the trunk that hold no limb: head, tail, and controls inside the flesh.
-fn ends(skeleton: &Skeleton, branches: &[Branch], top: usize, limbs: &[usize]) -> Vec<usize> {
+fn ends(skeleton: &Skeleton, branches: &[Branch], body: usize, limbs: &[usize]) -> Vec<usize> {
     let mut trunk = vec![false; skeleton.bones.len()];
-    trunk[top] = true;
-    for &limb in limbs {
-        let mut above = skeleton.bones[limb].parent;
+    let hung = limbs.iter().map(|l| skeleton.bones[*l].parent);
+    for first in hung.chain([Some(body)]) {
+        let mut above = first;
         while let Some(b) = above {
             trunk[b] = true;
             above = skeleton.bones[b].parent;
         }
     }
     let mut ends: Vec<usize> = Vec::new();
-    for b in skeleton.subtree(top) {
+    for b in 0..skeleton.bones.len() {
         let hangs = skeleton.bones[b].parent.is_some_and(|p| trunk[p]);
         if hangs && !trunk[b] && !limbs.contains(&b) && branches[b].area > 0.0 {
             ends.push(b);
@@ -163,6 +194,7 @@ fn set_head(skeleton: &mut Skeleton, surface: &Surface, branches: &[Branch], end
     }
     let rigid = |b: &usize| skeleton.bones[*b].part == Part::Rigid;
     skeleton.skull = skeleton.subtree(skull).into_iter().filter(rigid).collect();
+    skeleton.neck = skeleton.subtree(end).into_iter().filter(rigid).collect();
 }
 
 /// The first bone of the skull: the one that pairs (ears, eyes) hang on, or the last bulky one.

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::flap;
 use super::mirror::Symmetry;
 use super::protrusion::{self, Protrusion};
 use super::skeleton::{Part, Skeleton};
@@ -35,6 +36,8 @@ pub(super) struct Field {
     pub(super) protrusions: Vec<Protrusion>,
     /// Depth of the deepest flesh, body sizes.
     pub(super) depth: f64,
+    /// Points of the skull (but for ears) and of what is worn: flesh beside them does not soften them.
+    pub(super) rigid: Vec<bool>,
     /// Share of each point that is on a limb.
     pub(super) limb: Vec<f64>,
 }
@@ -55,6 +58,7 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetr
         label: vec![Label::Body; count],
         protrusions: Vec::new(),
         depth,
+        rigid: Vec::new(),
         limb: vec![0.0; count],
     };
     let skull = skeleton.share(surface, &skeleton.skull);
@@ -85,17 +89,34 @@ pub(super) fn measure(surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetr
         // Tails are as soft on all sides, bodies are not.
         field.soft[i] += body * frame.side(*p);
     }
-    field.protrusions = protrusion::find(surface, symmetry, &head);
-    for (k, protrusion) in field.protrusions.iter().enumerate() {
-        for (i, place) in &protrusion.points {
-            let soft = ease(0.0, 0.95, *place);
-            if soft > field.soft[*i] {
-                field.soft[*i] = soft;
+    field.stick_out(surface, skeleton, symmetry, &head);
+    let worn = skeleton.share(surface, &skeleton.worn);
+    let rigid =
+        |i: usize| (head[i] || worn[i] > 0.5) && field.label[i] == Label::Body && field.soft[i] == 0.0;
+    field.rigid = (0..count).map(rigid).collect();
+    field
+}
+
+impl Field {
+    /// Softens ears, horns and tufts that have no joints.
+    fn stick_out(&mut self, surface: &Surface, skeleton: &Skeleton, symmetry: &Symmetry, head: &[bool]) {
+        // Files may give ears to the neck.
+        let neck = skeleton.share(surface, &skeleton.neck);
+        let neck: Vec<bool> = neck.iter().map(|s| *s > 0.5).collect();
+        self.protrusions = protrusion::find(surface, symmetry, head);
+        let mut taken = vec![false; head.len()];
+        self.protrusions.iter().flat_map(|p| &p.points).for_each(|(i, _)| taken[*i] = true);
+        self.protrusions.extend(flap::find(surface, symmetry, skeleton.front, &neck, &taken));
+        for (k, protrusion) in self.protrusions.iter().enumerate() {
+            for (i, place) in &protrusion.points {
+                let soft = protrusion.peak * ease(0.0, 0.95, *place);
+                if soft > self.soft[*i] {
+                    self.soft[*i] = soft;
+                }
+                self.label[*i] = Label::Protrusion(k);
             }
-            field.label[*i] = Label::Protrusion(k);
         }
     }
-    field
 }
 
 /// Bones with the segments that flesh is measured from.
@@ -183,7 +204,7 @@ impl<'a> Frame<'a> {
     }
 
     fn flesh(&self, bone: usize, p: DVec3, depth: f64) -> f64 {
-        if self.skeleton.limb_length.is_empty() && !self.skeleton.chains.is_empty() {
+        if self.skeleton.stalk && !self.skeleton.chains.is_empty() {
             return 0.0; // A tail alone: the root holds it.
         }
         ease(SHALLOW * depth, depth, self.distance(bone, p))

@@ -9,8 +9,11 @@
 //! All lengths inside are in body sizes, so that a model scaled 0.01 or 100 has the same flesh. Softness is
 //! computed per welded point: vertices that a file splits get the same bits.
 
+#![doc = include_str!("../../../docs/recipe.md")]
+
 mod anatomy;
 mod field;
+mod flap;
 mod grid;
 mod mirror;
 mod protrusion;
@@ -31,6 +34,9 @@ use region::Regions;
 pub use rules::{Recipe, Rule};
 use skeleton::Skeleton;
 use surface::Surface;
+
+/// The manual: regions, keys of a recipe with units and defaults, and what cannot be told; Markdown.
+pub const MANUAL: &str = include_str!("../../../docs/recipe.md");
 
 /// Where flesh is and how it swings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,7 +74,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     symmetry.average(&mut field.soft);
     let pieces = smooth::pieces(&surface);
     let mut soft = field.soft.clone();
-    smooth::even(&surface, &mut soft);
+    smooth::even(&surface, &field.rigid, &mut soft);
     let mut regions = Regions::new(&skeleton, &field, &symmetry, &pieces);
     let shares = region::shares(model, &surface, recipe);
     let mut notes = Vec::new();
@@ -77,10 +83,10 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     smooth::limit_slope(&surface, &mut soft);
     smooth::fade_borders(&surface, &regions.of, &mut soft);
     smooth::unite(&pieces, &mut soft);
-    symmetry.average(&mut soft);
     leave_springs(model, &surface, &mut soft, &mut notes);
+    smooth::limit_slope(&surface, &mut soft);
+    symmetry.average(&mut soft);
     regions.split_limbs(&surface, &field, recipe, &soft);
-    regions.drop_unused();
     let was_painted = painted.iter().flatten().count();
     if was_painted > 0 {
         notes.push(format!("{was_painted} points have painted softness"));
@@ -88,6 +94,7 @@ pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
     for (soft, painted) in soft.iter_mut().zip(painted) {
         *soft = painted.unwrap_or(*soft);
     }
+    regions.drop_unused(&soft);
     #[expect(clippy::cast_possible_truncation, reason = "softness is f32")]
     let softness = surface.point_of.iter().map(|p| soft[*p] as f32).collect();
     Ok(Flesh {

@@ -19,6 +19,8 @@ const ELONGATED: (f64, f64) = (1.25, 2.5);
 /// The skull reaches this far from its middle, times the median of the head's points. A small one shows ears to their
 /// base, a large one keeps the ears of a coarse mesh apart; the smallest that shows an ear decides.
 const SKULLS: [f64; 5] = [0.6, 0.75, 0.9, 1.05, 1.2];
+/// The way along edges from the tip to the base may be this much longer than it is.
+const DETOUR: f64 = 1.4;
 /// Steps in which an island is cut shorter until it is thin.
 const STEPS: usize = 24;
 
@@ -29,6 +31,8 @@ pub(super) struct Protrusion {
     pub(super) points: Vec<(usize, f64)>,
     /// Base to tip, body sizes.
     pub(super) length: f64,
+    /// Softness of the tip.
+    pub(super) peak: f64,
     /// Has a twin on the other side.
     pub(super) paired: bool,
 }
@@ -217,12 +221,20 @@ impl Sweep<'_> {
         let thin = |(length, area): &(f64, f64)| *area > 0.0 && 2.0 * length * length > least * area;
         let (length, area) = ends.into_iter().find(thin)?;
         let base = island.peak - length;
-        let place = |i: &usize| (*i, ((self.way[*i] - base) / length).clamp(0.0, 1.0));
-        let points: Vec<(usize, f64)> =
-            island.points.iter().filter(|i| self.way[**i] > base).map(place).collect();
-        (length >= SHORTEST && points.len() > 2 && area < 0.35 * self.shape.area).then_some(Protrusion {
+        let mut from_tip = vec![f64::INFINITY; self.way.len()];
+        from_tip[island.points[0]] = 0.0;
+        let from_tip = ways(&self.surface.links, &from_tip, |i| self.way[i] > base);
+        // A coarse mesh has points beside the base that are far from the skull too, but farther from the tip.
+        let place = |i: &usize| {
+            let near_tip = 1.0 - from_tip[*i] / (DETOUR * length);
+            (*i, ((self.way[*i] - base) / length).min(near_tip).clamp(0.0, 1.0))
+        };
+        let out = island.points.iter().filter(|i| self.way[**i] > base);
+        let points: Vec<(usize, f64)> = out.map(place).filter(|(_, place)| *place > 0.0).collect();
+        (length >= SHORTEST && !points.is_empty() && area < 0.35 * self.shape.area).then_some(Protrusion {
             points,
             length,
+            peak: 1.0,
             paired,
         })
     }

@@ -137,13 +137,13 @@ impl Regions {
 }
 
 impl Regions {
-    /// Drops regions without points; the body's stays.
-    pub(super) fn drop_unused(&mut self) {
+    /// Drops regions without flesh; the body's stays.
+    pub(super) fn drop_unused(&mut self, soft: &[f64]) {
         let mut number = vec![0; self.list.len()];
         let mut kept = Vec::new();
         for (at, region) in self.list.drain(..).enumerate() {
-            number[at] = kept.len();
-            if at == 0 || self.of.iter().any(|r| usize::from(*r) == at) {
+            if at == 0 || self.of.iter().zip(soft).any(|(r, s)| usize::from(*r) == at && *s > 0.0) {
+                number[at] = kept.len();
                 kept.push(region);
             }
         }

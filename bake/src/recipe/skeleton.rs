@@ -64,6 +64,12 @@ pub(super) struct Skeleton {
     pub(super) limb_length: BTreeMap<usize, f64>,
     /// Bones of the head that carry the skull.
     pub(super) skull: Vec<usize>,
+    /// The skull's and those between it and the trunk.
+    pub(super) neck: Vec<usize>,
+    /// Bones of what is worn.
+    pub(super) worn: Vec<usize>,
+    /// No body, only a tail.
+    pub(super) stalk: bool,
     /// Where the character looks: the sign of z.
     pub(super) front: f64,
 }

@@ -18,7 +18,8 @@ const PIECE: f64 = 0.08;
 const BORDER: f64 = 0.02;
 
 /// Evens out: minimizes `Σ aᵢ (sᵢ − rᵢ)² + EVEN² Σ aᵢⱼ ((sᵢ − sⱼ) / lᵢⱼ)²`, area `a` (the smaller of two), length `l`.
-pub(super) fn even(surface: &Surface, soft: &mut [f64]) {
+/// Points that are `held` stay as they are.
+pub(super) fn even(surface: &Surface, held: &[bool], soft: &mut [f64]) {
     let raw = soft.to_vec();
     let mass: Vec<f64> = surface.area.iter().map(|a| a + 1e-9).collect();
     let pulls: Vec<Vec<(usize, f64)>> = surface
@@ -35,7 +36,7 @@ pub(super) fn even(surface: &Surface, soft: &mut [f64]) {
         })
         .collect();
     for _ in 0..PASSES {
-        for i in 0..soft.len() {
+        for i in (0..soft.len()).filter(|i| !held[*i]) {
             let (mut sum, mut weight) = (mass[i] * raw[i], mass[i]);
             for (j, pull) in &pulls[i] {
                 sum += pull * soft[*j];

@@ -29,6 +29,8 @@ pub(super) struct Surface {
     pub(super) weights: Vec<Vec<(usize, f64)>>,
     /// A third of the area of the triangles around a point.
     pub(super) area: Vec<f64>,
+    /// A third of the area vectors (area times normal) of the triangles around a point.
+    pub(super) vector: Vec<DVec3>,
     /// Neighbors along triangle edges, ascending, with lengths.
     pub(super) edges: Vec<Vec<(usize, f64)>>,
     /// `edges`, and bridges between shells that touch.
@@ -66,12 +68,14 @@ impl Surface {
         let points: Vec<DVec3> = first.iter().map(|v| scaled[*v]).collect();
         let bind = bind_positions(model);
         let triangles = triangles(model, &point_of);
+        let (area, vector) = areas(&points, &triangles);
         let mut surface = Self {
             size,
             corner: low,
             bind: first.iter().map(|v| bind[*v]).collect(),
             weights: weights(model, &point_of, points.len()),
-            area: areas(&points, &triangles),
+            area,
+            vector,
             edges: edges(&points, &triangles),
             links: Vec::new(),
             shell: Vec::new(),
@@ -179,15 +183,17 @@ fn weights(model: &Model, point_of: &[usize], points: usize) -> Vec<Vec<(usize, 
     sums.into_iter().map(normalized).collect()
 }
 
-fn areas(points: &[DVec3], triangles: &[[usize; 3]]) -> Vec<f64> {
+fn areas(points: &[DVec3], triangles: &[[usize; 3]]) -> (Vec<f64>, Vec<DVec3>) {
     let mut area = vec![0.0; points.len()];
+    let mut vector = vec![DVec3::ZERO; points.len()];
     for [a, b, c] in triangles {
-        let third = (points[*b] - points[*a]).cross(points[*c] - points[*a]).length() / 6.0;
+        let third = (points[*b] - points[*a]).cross(points[*c] - points[*a]) / 6.0;
         for v in [a, b, c] {
-            area[*v] += third;
+            area[*v] += third.length();
+            vector[*v] += third;
         }
     }
-    area
+    (area, vector)
 }
 
 fn edges(points: &[DVec3], triangles: &[[usize; 3]]) -> Vec<Vec<(usize, f64)>> {
