@@ -10,9 +10,9 @@ use sinew_bake::recipe::{Recipe, flesh};
 use sinew_bake::{builtin, pack};
 
 /// Content hash of the built-in character's asset.
-const ASSET: u64 = 0x7e21_2de4_dba3_d411;
+const ASSET: u64 = 0xbac7_21a3_b210_3c2e;
 /// Digest of the 600 frames.
-const REPLAY: u64 = 0x6533_e686_d1ec_93a0;
+const REPLAY: u64 = 0x133f_814f_6ea9_532b;
 /// Frames.
 const FRAMES: u32 = 600;
 
