@@ -14,7 +14,7 @@ impl Random {
     }
 
     fn sign(&mut self) -> f32 {
-        if self.next() % 2 == 0 { 1.0 } else { -1.0 }
+        if self.next().is_multiple_of(2) { 1.0 } else { -1.0 }
     }
 }
 

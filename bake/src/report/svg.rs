@@ -29,7 +29,7 @@ pub struct Plot {
 pub struct Series {
     /// Name in the legend.
     pub name: String,
-    /// Number of its color; there are [`COLORS`](super::COLORS), then they repeat.
+    /// Number of its color; there are [`COLORS`], then they repeat.
     pub color: usize,
     /// Points, x ascending; points that are not finite interrupt the line.
     pub points: Vec<[f64; 2]>,
