@@ -2,6 +2,6 @@
 
 pub mod asset_bytes;
 pub mod oracle;
+pub mod recording;
 pub mod run;
-pub mod session;
 pub mod tube;

@@ -6,7 +6,7 @@ use sinew::replay::{
     Record, Recorder, Replay, ReplayError, Stage, Verdict, Verifier, verify,
 };
 use sinew::{Character, Pose, StepError, Stepped, Tunables};
-use sinew_tests::session::{FRAMES, pose, record, root, with_character};
+use sinew_tests::recording::{FRAMES, pose, record, root, with_character};
 
 fn recorded(every: u32) -> Vec<u8> {
     with_character(|c| record(c, every))

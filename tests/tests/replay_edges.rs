@@ -5,7 +5,7 @@ use sinew::replay::{
 };
 use sinew::{Asset, Character, Pose, Stepped};
 use sinew_tests::asset_bytes;
-use sinew_tests::session::{pose, record, root, with_character};
+use sinew_tests::recording::{pose, record, root, with_character};
 
 #[test]
 fn another_asset_is_refused() {

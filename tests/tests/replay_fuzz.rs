@@ -3,7 +3,7 @@
 use sinew::replay::format::{HEADER_LEN, check};
 use sinew::replay::{Extent, HeaderField, Recorder, Replay, Verdict, verify};
 use sinew::{Pose, Root};
-use sinew_tests::session::{record, with_character};
+use sinew_tests::recording::{record, with_character};
 
 /// A generator of xorshift numbers.
 struct Random(u64);
@@ -142,7 +142,7 @@ fn call(recorder: &mut Recorder<'_, '_, Vec<u8>>, random: &mut Random, saved: &m
 #[test]
 fn whatever_was_recorded_verifies() {
     let mut random = Random(0x2545_f491_4f6c_dd1d);
-    for session in 0..300 {
+    for round in 0..300 {
         let bytes = with_character(|c| {
             let mut recorder = Recorder::new(c, 3, Vec::new()).expect("memory");
             let mut saved = Vec::new();
@@ -150,12 +150,12 @@ fn whatever_was_recorded_verifies() {
                 call(&mut recorder, &mut random, &mut saved);
                 let c = recorder.character();
                 let shown = [c.raw_offsets(), c.positions(), c.normals()];
-                assert!(shown.concat().as_flattened().iter().all(|x| x.is_finite()), "session {session}");
+                assert!(shown.concat().as_flattened().iter().all(|x| x.is_finite()), "round {round}");
             }
             recorder.finish().expect("memory").0
         });
         let replay = Replay::parse(&bytes).expect("what was recorded can be read");
         let verdict = with_character(|c| verify(c, &replay, Extent::FirstDifference, |_, _| {}));
-        assert_eq!(verdict, Ok(Verdict::Same { frames: replay.finished().frames }), "session {session}");
+        assert_eq!(verdict, Ok(Verdict::Same { frames: replay.finished().frames }), "round {round}");
     }
 }
