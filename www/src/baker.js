@@ -30,6 +30,3 @@ function call(task, input) {
 
 /** @returns {Promise<{ asset: Uint8Array, notes: string[] }>} */
 export const bake = (bytes, name) => call('bake', { bytes, name });
-
-/** @returns {Promise<{ glb: Uint8Array, asset: Uint8Array }>} the character that comes with the page */
-export const builtin = () => call('builtin', {});

@@ -1,9 +1,12 @@
 // From bytes to an actor.
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import plumModel from '../generated/plum.glb?url';
+import plumAsset from '../generated/plum.sinew?url';
+import { notes as plumNotes } from '../generated/plum.json';
 import { Actor } from './actor.js';
 import * as baker from './baker.js';
 import { inspect } from './inspect.js';
-import { asProblem } from './problem.js';
+import { Problem, asProblem } from './problem.js';
 
 const loader = new GLTFLoader();
 
@@ -17,11 +20,16 @@ export async function fromFile(bytes, name) {
   return actor({ name, gltf, asset, notes });
 }
 
-/** The character that comes with the page. */
+/** The character that comes with the page, baked when that was built. */
 export async function builtin() {
-  const { glb, asset, notes } = await baker.builtin();
-  const gltf = await parse(glb, 'Plum');
-  return actor({ name: 'Plum', gltf, asset, notes });
+  const [gltf, asset] = await Promise.all([fetched(plumModel).then((glb) => parse(glb, 'Plum')), fetched(plumAsset)]);
+  return actor({ name: 'Plum', gltf, asset, notes: plumNotes });
+}
+
+async function fetched(url) {
+  const response = await fetch(url);
+  if (!response.ok) throw new Problem('The character that comes with the page is missing', `${url}: ${response.status}. Build the page again.`);
+  return new Uint8Array(await response.arrayBuffer());
 }
 
 async function parse(bytes, name) {

@@ -1,12 +1,13 @@
 import { BufferAttribute, DynamicDrawUsage, MeshStandardMaterial } from 'three';
 
-// Rest, then rising share of the largest offset; linear RGB.
+// Clay at rest, then ever darker with the square root of the share of the largest offset: ordinary motion
+// uses a few hundredths of that, and would else have one colour. Linear RGB.
 const STOPS = [
-  [0.02, 0.03, 0.1],
-  [0.04, 0.18, 0.45],
-  [0.05, 0.5, 0.35],
-  [0.85, 0.6, 0.05],
-  [0.9, 0.08, 0.03],
+  [0.73, 0.708, 0.672],
+  [0.973, 0.462, 0.01],
+  [0.847, 0.141, 0.019],
+  [0.497, 0.038, 0.089],
+  [0.055, 0.003, 0.138],
 ];
 const STEPS = 255;
 
@@ -41,7 +42,7 @@ export class Heat {
     for (const { flesh, color } of this.#parts) {
       const part = flesh.part(heat, 1);
       for (let i = 0; i < part.length; i++) {
-        const from = 3 * Math.min(STEPS, Math.round(STEPS * part[i]));
+        const from = 3 * Math.min(STEPS, Math.round(STEPS * Math.sqrt(part[i])));
         for (let c = 0; c < 3; c++) color.array[3 * i + c] = this.#ramp[from + c];
       }
       color.needsUpdate = true;
