@@ -9,6 +9,8 @@
 pub mod builtin;
 pub mod error;
 pub mod export;
+#[cfg(feature = "render")]
+pub mod film;
 pub mod import;
 pub mod model;
 pub mod pack;

@@ -3,7 +3,7 @@
 use crate::asset::Asset;
 use crate::asset::layout::MAX_REGIONS;
 use crate::kernel::clip::Channels;
-use crate::kernel::skin::{self, Columns};
+use crate::kernel::skin::{self, Rows};
 use crate::kernel::spring::{Spring, Step};
 use crate::kernel::unskin::{self, Limit};
 use crate::life::{Life, Phase};
@@ -66,8 +66,7 @@ impl<'a> Character<'a> {
         let memory = Workspace::new(&asset, memory)?;
         let tunables = Self::default_tunables(&asset);
         embed::rest(surface(&asset), memory.positions, memory.normals);
-        let identity = affine::IDENTITY.map(|[x, y, z]| [x, y, z, 0.0]);
-        memory.palette.fill(identity);
+        memory.palette.fill(affine::to_rows(&affine::IDENTITY));
         let life = Life {
             phase: Phase::Settle,
             frozen: false,
@@ -307,9 +306,9 @@ impl<'a> Character<'a> {
         self.memory.offsets
     }
 
-    /// Matrix of each joint in the last step, model from bind.
+    /// Map of each joint in the last step, model from bind.
     #[must_use]
-    pub fn palette(&self) -> &[Columns] {
+    pub fn palette(&self) -> &[Rows] {
         self.memory.palette
     }
 

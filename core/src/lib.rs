@@ -30,6 +30,7 @@ extern crate std;
 compile_error!("x87 rounds twice: sinew needs SSE2");
 
 pub mod asset;
+mod batch;
 mod character;
 pub mod kernel;
 mod lanes;
@@ -43,6 +44,7 @@ mod tunables;
 mod workspace;
 
 pub use asset::{Asset, AssetError};
+pub use batch::{Batch, step_batch};
 pub use character::Character;
 pub use math::affine::Affine;
 pub use stage::pose::Root;

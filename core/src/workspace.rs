@@ -1,7 +1,7 @@
 //! The caller's memory, split once into the arrays of a character.
 
 use crate::asset::Asset;
-use crate::kernel::skin::Columns;
+use crate::kernel::skin::{LinearBlock, Rows};
 use crate::math::affine::Affine;
 use crate::stage::dynamics::springs::State;
 use core::fmt;
@@ -34,14 +34,14 @@ pub(crate) struct Workspace<'a> {
     pub(crate) targets: &'a mut [[f32; 3]],
     /// Accelerations of this step.
     pub(crate) f: &'a mut [[f32; 3]],
-    /// Linear parts of the blended matrices.
-    pub(crate) linear: &'a mut [[[f32; 4]; 3]],
+    /// Linear parts of the blended maps.
+    pub(crate) linear: &'a mut [LinearBlock],
     /// Render positions, bind space.
     pub(crate) positions: &'a mut [[f32; 3]],
     /// Render normals, bind space.
     pub(crate) normals: &'a mut [[f32; 3]],
-    /// Matrix of each joint.
-    pub(crate) palette: &'a mut [Columns],
+    /// Map of each joint.
+    pub(crate) palette: &'a mut [Rows],
     /// Sampled joints.
     pub(crate) joints: &'a mut [Affine],
     /// Sampled local transforms.
@@ -62,7 +62,7 @@ impl<'a> Workspace<'a> {
     pub(crate) fn required_len(asset: &Asset<'_>) -> usize {
         let m = &asset.meta;
         let [active, vertices, joints, nodes] = [m.active, m.vertices, m.joints, m.nodes].map(|n| n as usize);
-        active * (8 * 3 + 12) + vertices * 6 + joints * (16 + 12) + nodes * (10 + 12)
+        active * (8 * 3) + active.div_ceil(4) * 36 + vertices * 6 + joints * (12 + 12) + nodes * (10 + 12)
     }
 
     /// Splits `buffer`.
@@ -77,8 +77,8 @@ impl<'a> Workspace<'a> {
         let buffer = &mut { buffer };
         Ok(Self {
             // Wide elements first: they keep the alignment of the buffer.
-            palette: bytemuck::cast_slice_mut(take::<16>(buffer, joints)),
-            linear: bytemuck::cast_slice_mut(take::<12>(buffer, active)),
+            palette: bytemuck::cast_slice_mut(take::<12>(buffer, joints)),
+            linear: bytemuck::cast_slice_mut(take::<36>(buffer, active.div_ceil(4))),
             joints: bytemuck::cast_slice_mut(take::<12>(buffer, joints)),
             model: bytemuck::cast_slice_mut(take::<12>(buffer, nodes)),
             state: State {

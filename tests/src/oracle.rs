@@ -49,6 +49,9 @@ mod tests {
     #[test]
     fn a_rotation_comes_out_of_a_skew_matrix() {
         let e = expm(&[[0.0, -1.0], [1.0, 0.0]]);
-        assert!((e[0][0] - libm::cos(1.0)).abs() < 1e-14 && (e[1][0] - libm::sin(1.0)).abs() < 1e-14, "{e:?}");
+        assert!(
+            (e[0][0] - libm::cos(1.0)).abs() < 1e-14 && (e[1][0] - libm::sin(1.0)).abs() < 1e-14,
+            "{e:?}"
+        );
     }
 }

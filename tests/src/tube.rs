@@ -118,7 +118,8 @@ pub fn flesh(scale: f64) -> Flesh {
         region: (0..AROUND * RINGS).map(|v| u8::from(height(v) > 0.6)).collect(),
         regions: vec![region("lower", 3.0), region("upper", 2.0)],
         body_size: scale * libm::sqrt(HEIGHT * HEIGHT + 2.0 * 0.4 * 0.4),
-        ..Flesh::default()
+        mirror: None,
+        notes: Vec::new(),
     }
 }
 

@@ -1,10 +1,19 @@
 //! Set-up and chores: `cargo xtask --help`.
 
 mod apt;
+mod browser;
+mod cache;
+mod clean;
+mod count;
+mod demo;
 mod npm;
+mod page;
 mod process;
 mod report;
+mod server;
+mod setup;
 mod sizes;
+mod test;
 mod toolchain;
 mod wasm;
 mod workspace;
@@ -24,13 +33,46 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Chore {
+    /// Install what a fresh machine lacks, or say how; the other chores do it as they need it.
+    Setup,
+    /// Bake and play the built-in character, natively and in wasm, and show the page.
+    Demo {
+        /// Load the page once in headless Chromium instead of serving it.
+        #[arg(long)]
+        headless: bool,
+        /// Port of the page on 127.0.0.1; 0 takes a free one.
+        #[arg(long, default_value_t = 8080)]
+        port: u16,
+    },
+    /// Run every check and test.
+    Test {
+        /// Only checks with this in their name.
+        #[arg(long, default_value = "")]
+        filter: String,
+    },
     /// Build the npm package into `wasm/pkg` and check its size.
     Wasm,
+    /// Build the page and serve it.
+    Serve {
+        /// Port on 127.0.0.1; 0 takes a free one.
+        #[arg(long, default_value_t = 8080)]
+        port: u16,
+    },
+    /// Measure, natively and under wasm.
+    Bench {
+        /// Passed on to `sinew bench`; without any, wasm is measured too.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
+    /// Remove what chores made.
+    Clean,
 }
 
 fn main() -> ExitCode {
     match run(Arguments::parse().chore) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        // Told already, as a table.
+        Ok(false) => ExitCode::FAILURE,
         Err(error) => {
             report::note(format!("error: {error:#}"));
             ExitCode::FAILURE
@@ -38,8 +80,16 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(chore: Chore) -> Result<()> {
-    match chore {
+/// Carries out a chore; false if checks failed.
+fn run(chore: Chore) -> Result<bool> {
+    let result = match chore {
+        Chore::Test { filter } => return test::run(&filter),
+        Chore::Setup => setup::run(),
+        Chore::Demo { headless, port } => demo::run(headless, port),
         Chore::Wasm => wasm::run(),
-    }
+        Chore::Serve { port } => page::serve(port),
+        Chore::Bench { arguments } => demo::bench(&arguments),
+        Chore::Clean => clean::run(),
+    };
+    result.map(|()| true)
 }

@@ -18,7 +18,7 @@ const STAMP: &str = "node_modules/.sinew-stamp";
 /// With where to get it.
 pub(crate) fn check_node() -> Result<()> {
     const HOW: &str = "install it from https://nodejs.org, or with an older npm: \
-                       `npm install --prefix ~/.local node@22` and put ~/.local/node_modules/node/bin on PATH";
+                       `npm install --prefix ~/.local node@22` and put ~/.local/node_modules/.bin on PATH";
     let found = process::output(process::command("node", &workspace::root()).arg("--version"));
     let Some(found) = found else {
         bail!("Node >= 20.19 is needed and there is none on PATH: {HOW}");

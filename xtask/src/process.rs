@@ -1,13 +1,14 @@
 //! Other programs: run with their output kept, the last line shown meanwhile.
 
+use core::time::Duration;
 use std::env;
 use std::ffi::OsStr;
+use std::fs;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 
@@ -56,16 +57,24 @@ pub(crate) fn output(command: &mut Command) -> Option<String> {
 /// If the program cannot be started or fails; the error ends with the last lines of its output.
 pub(crate) fn run(name: &str, command: &mut Command) -> Result<String> {
     let step = Step::start(name);
-    match stream(&step, command)? {
-        (status, text) if status.success() => {
-            step.done();
-            Ok(text)
-        }
-        (status, text) => {
-            step.end("FAILED");
-            bail!("{}: {status}\n{}", shown(command), tail(&text))
-        }
+    let (status, text) = stream(&step, command)?;
+    if status.success() {
+        step.done();
+        return Ok(text);
     }
+    step.end("FAILED");
+    bail!(failure(name, command, status, &text))
+}
+
+/// What is told of a program that failed; its whole output is kept in a file.
+#[must_use]
+pub(crate) fn failure(name: &str, command: &Command, status: ExitStatus, text: &str) -> String {
+    let file = name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+    let log = workspace::target_dir().join("xtask-logs").join(file).with_extension("log");
+    let kept =
+        log.parent().is_some_and(|dir| fs::create_dir_all(dir).is_ok()) && fs::write(&log, text).is_ok();
+    let whole = if kept { format!("\nwhole output: {}", workspace::shown(&log)) } else { String::new() };
+    format!("`{}`: {status}\n{}{whole}", shown(command), tail(text))
 }
 
 /// Runs inside a step; a failing program is not an error here.
@@ -113,10 +122,11 @@ fn collect(step: &Step, reader: io::PipeReader) -> String {
     }
 }
 
-/// The last lines of a log.
+/// The last lines of a log, without tests that passed.
 #[must_use]
 pub(crate) fn tail(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().collect();
+    let telling = |line: &&str| !line.ends_with("... ok") && !line.trim().is_empty();
+    let lines: Vec<&str> = text.lines().filter(telling).collect();
     lines[lines.len().saturating_sub(TAIL)..].join("\n")
 }
 

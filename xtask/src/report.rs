@@ -1,8 +1,9 @@
 //! The one place that prints: progress on standard error, results on standard output.
 
-use std::cell::Cell;
+use core::cell::Cell;
+use core::time::Duration;
 use std::io::{self, Write};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 

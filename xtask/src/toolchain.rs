@@ -6,7 +6,8 @@ use std::process::Command;
 
 use anyhow::{Result, bail};
 
-use crate::{apt, process, report, workspace};
+use crate::report::{self, Step};
+use crate::{apt, process, workspace};
 
 /// Debian's compiler, and where its library's source lies.
 const SYSTEM_RUSTC: &str = "/usr/bin/rustc";
@@ -139,9 +140,13 @@ fn has_target(rustc: &Path, target: &str) -> bool {
 
 /// Asks rustup for the target; often it can be had even where little else is reachable.
 fn rustup_add(target: &str) -> bool {
+    let step = Step::start(format!("rustup target add {target}"));
     let mut rustup = process::command("rustup", &workspace::root());
-    rustup.args(["target", "add", target]);
-    process::run(&format!("rustup target add {target}"), &mut rustup).is_ok()
+    let added =
+        process::stream(&step, rustup.args(["target", "add", target])).is_ok_and(|(s, _)| s.success());
+    // Not a failure yet: there are other ways.
+    step.end(if added { "ok" } else { "no" });
+    added
 }
 
 /// Major and minor version from `rustc 1.96.0 (...)`.

@@ -24,7 +24,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
-    let bar = progress("bake", 4);
+    let bar = progress::bar("bake", 4);
     let model = load::character(&arguments.input)?;
     bar.inc(1);
     let recipe = match &arguments.recipe {
@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         json: json!({
             "asset": arguments.out, "hash": format!("{:016x}", asset.hash), "bytes": bytes.len(),
             "vertices": m.vertices, "points": m.points, "active": m.active, "joints": m.joints,
-            "clips": m.clips, "regions": flesh.regions, "symmetric": flesh.symmetric, "notes": notes,
+            "clips": m.clips, "regions": flesh.regions, "symmetric": flesh.mirror.is_some(), "notes": notes,
         }),
         lines,
         ok: true,

@@ -8,7 +8,11 @@ use std::path::Path;
 
 pub(super) fn run(file: &Path) -> Result<Outcome, Error> {
     let head = if file.exists() { load::read(file)? } else { Vec::new() };
-    let json = if head.starts_with(b"SINW") { asset(file, &head)? } else { character(file)? };
+    let json = match head.first_chunk() {
+        Some(b"SINW") => asset(file, &head)?,
+        Some(b"SNRP") => super::verify::inspect(file, &head)?,
+        _ => character(file)?,
+    };
     let lines = match &json {
         Value::Object(fields) => fields.iter().map(|(k, v)| format!("{k:12} {}", plain(v))).collect(),
         other => vec![other.to_string()],

@@ -1,14 +1,18 @@
 //! Arguments, exit codes and progress.
 
 mod bake;
+mod bench;
 mod inspect;
 mod load;
 mod pictures;
 mod play;
+mod progress;
+mod verify;
 
 use clap::{Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::Value;
+use serde_json::{Value, json};
+use sinew_bake::Error;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -29,6 +33,13 @@ enum Command {
     Bake(bake::Arguments),
     /// Run the runtime on a clip; the ending of OUT says what comes out
     Play(play::Arguments),
+    /// Replay a recording and compare every frame, bit for bit
+    Verify(verify::Arguments),
+    /// Measure the runtime on this machine, with peers in the same run
+    Bench {
+        /// springs, skin or character-frame; all without it
+        name: Option<String>,
+    },
     /// Say what is in a .glb, .vrm, .sinew or .replay
     Inspect {
         /// The file
@@ -49,32 +60,41 @@ pub(super) fn main() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Bake(a) => bake::run(a),
         Command::Play(a) => play::run(a),
+        Command::Verify(a) => verify::run(a),
+        Command::Bench { name } => bench::run(name.as_deref()),
         Command::Inspect { file } => inspect::run(file),
     };
-    match outcome {
-        Ok(Outcome { json, lines, ok }) => {
-            if arguments.json {
-                println!("{json}");
-            } else {
-                lines.iter().for_each(|l| println!("{l}"));
-            }
-            if ok { ExitCode::SUCCESS } else { ExitCode::from(1) }
-        }
+    let (json, lines, code) = match outcome {
+        Ok(Outcome { json, lines, ok }) => (json, lines, u8::from(!ok)),
         Err(error) => {
-            eprintln!("sinew: {error}");
+            let reason = one_line(&error);
+            eprintln!("sinew: {reason}");
+            (json!({ "error": reason }), Vec::new(), 2)
+        }
+    };
+    let text = if arguments.json { vec![json.to_string()] } else { lines };
+    match print(&text) {
+        // A reader that has seen enough (`| head`) is no failure.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            eprintln!("sinew: standard output: cannot be written: {error}");
             ExitCode::from(2)
         }
+        _ => ExitCode::from(code),
     }
 }
 
-/// A progress bar on a terminal, nothing elsewhere.
-fn progress(what: &str, length: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg:10} {wide_bar} {pos}/{len} {eta}");
-    let bar = ProgressBar::new(length).with_message(what.to_owned());
-    if let Ok(style) = style {
-        bar.set_style(style);
-    }
-    bar
+fn print(lines: &[String]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    lines.iter().try_for_each(|line| writeln!(out, "{line}"))?;
+    out.flush()
+}
+
+/// An error in one line: what parsers say may have several, and names in files anything.
+fn one_line(error: &Error) -> String {
+    let text = error.to_string();
+    let words: Vec<&str> =
+        text.split(|c: char| c.is_control() || c == ' ').filter(|w| !w.is_empty()).collect();
+    words.join(" ")
 }
 
 /// Bytes in a unit that people read.

@@ -1,12 +1,11 @@
 //! `sinew play`.
 
-use super::pictures::Pictures;
-use super::{Outcome, load, progress};
+use super::{Outcome, load, pictures, progress};
 use serde_json::json;
-use sinew::Character;
+use sinew::{Asset, Character};
 use sinew_bake::export::morph::{self, MorphFrame};
 use sinew_bake::export::{self, npy};
-use sinew_bake::play::{Frame, Motion, Player, Settings};
+use sinew_bake::play::{Frame, Player, Settings};
 use sinew_bake::{Error, Model};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -20,7 +19,7 @@ pub(super) struct Arguments {
     asset: Option<PathBuf>,
     /// Skinning alone
     #[arg(long)]
-    no_flesh: bool,
+    pub(super) no_flesh: bool,
     /// Name of the clip; the first without it, a built-in shake where there is none
     #[arg(long)]
     clip: Option<String>,
@@ -32,16 +31,17 @@ pub(super) struct Arguments {
     seconds: Option<f32>,
     /// Draw only the fleshed character in a GIF, without skinning beside it
     #[arg(long)]
-    alone: bool,
+    pub(super) alone: bool,
     /// Height of pictures, pixels
-    #[arg(long, default_value_t = 360)]
-    height: u16,
-    /// What to write: .png (contact sheet), .gif, .glb (morph animation), .npy (frames × vertices × 3), .json
+    #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u16).range(64..=2000))]
+    pub(super) height: u16,
+    /// What to write: .png (contact sheet), .gif, .glb (morph animation), .npy (frames × vertices × 3), .replay, .json
     #[arg(short, long)]
-    out: PathBuf,
+    pub(super) out: PathBuf,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
+    let write = writer(&arguments.out)?;
     let model = load::character(&arguments.input)?;
     let aligned = load::asset(&model, arguments.asset.as_deref())?;
     let name = arguments.asset.as_deref().unwrap_or(&arguments.input);
@@ -52,19 +52,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
         seconds: arguments.seconds,
         tunables: load::tunables(arguments.asset.as_deref(), &asset)?,
     };
-    let mut memory = vec![0.0; Character::required_len(&asset)];
-    let mut player = Player::new(&model, asset, &mut memory, &settings)?;
-    let summary = write(arguments, &model, &mut player)?;
-    let (clip, frames) = (clip_name(&player.motion), player.frames);
+    let memory = vec![0.0; Character::required_len(&asset)];
+    let mut run = Run { model: &model, asset, settings, memory };
+    let summary = write(arguments, &mut run)?;
+    let player = run.player()?;
     let line = format!(
-        "{}: {clip}, {frames} frames at {} Hz, largest offset {:.1} % of the body",
+        "{}: {}, largest offset {:.1} % of the body",
         arguments.out.display(),
-        player.fps,
+        player.describe(),
         100.0 * summary.largest
     );
     Ok(Outcome {
         json: json!({
-            "out": arguments.out, "clip": clip, "frames": frames, "fps": player.fps,
+            "out": arguments.out, "clip": player.motion.name(), "frames": player.frames, "fps": player.fps,
             "vertices": model.vertex_count(), "largest_offset": summary.largest,
             "mean_offset": summary.mean,
         }),
@@ -73,16 +73,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     })
 }
 
-fn clip_name(motion: &Motion) -> &str {
-    match motion {
-        Motion::Clip { name, .. } => name,
-        Motion::Shake => "built-in shake",
+/// A character and a motion, to be played as often as is needed.
+pub(super) struct Run<'a> {
+    pub(super) model: &'a Model,
+    asset: Asset<'a>,
+    settings: Settings,
+    memory: Vec<f32>,
+}
+
+impl Run<'_> {
+    /// A player at the first frame.
+    pub(super) fn player(&mut self) -> Result<Player<'_>, Error> {
+        Player::new(self.model, self.asset, &mut self.memory, &self.settings)
     }
 }
 
 /// Offsets over a run, body sizes.
 #[derive(Default)]
-struct Summary {
+pub(super) struct Summary {
     largest: f32,
     mean: f64,
 }
@@ -97,47 +105,40 @@ impl Summary {
     }
 }
 
-/// Runs the player and writes what the ending of the output asks for.
-fn write(arguments: &Arguments, model: &Model, player: &mut Player<'_>) -> Result<Summary, Error> {
-    let (out, flesh) = (arguments.out.as_path(), !arguments.no_flesh);
-    let ending = out.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let pictures = Pictures::new(model, usize::from(arguments.height), flesh, !arguments.alone && flesh);
-    match ending.as_str() {
-        "npy" => array(out, player, flesh),
-        "glb" => animation(out, model, player, flesh),
-        "json" => figures(out, model, player),
-        "png" => each_twice(player, |player| pictures.sheet(out, player)),
-        "gif" => each_twice(player, |player| pictures.gif(out, player)),
-        _ => Err(Error::unusable(
-            out.display().to_string(),
-            "--out",
-            format!("the ending `.{ending}` is not known"),
-            "choose .png, .gif, .glb, .npy or .json",
-        )),
-    }
-}
+type Writer = fn(&Arguments, &mut Run<'_>) -> Result<Summary, Error>;
 
-/// Pictures need the extent of the whole motion first: all frames are kept, then drawn.
-fn each_twice(
-    player: &mut Player<'_>,
-    draw: impl FnOnce(&[Frame]) -> Result<(), Error>,
-) -> Result<Summary, Error> {
-    let mut frames = Vec::new();
-    let summary = every(player, |frame| {
-        frames.push(frame.clone());
-        Ok(())
-    })?;
-    draw(&frames)?;
-    Ok(summary)
+/// What the ending of the output asks for.
+fn writer(out: &Path) -> Result<Writer, Error> {
+    let ending = out.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    Ok(match ending.as_str() {
+        "npy" => array,
+        "glb" => animation,
+        "json" => figures,
+        "replay" => replay,
+        "png" => pictures::sheet,
+        "gif" => pictures::gif,
+        _ => {
+            return Err(Error::unusable(
+                out.display().to_string(),
+                "--out",
+                format!("the ending `.{ending}` is not known"),
+                "choose .png, .gif, .glb, .npy, .replay or .json",
+            ));
+        }
+    })
 }
 
 /// Calls `f` with every frame.
-fn every(player: &mut Player<'_>, mut f: impl FnMut(&Frame) -> io::Result<()>) -> Result<Summary, Error> {
+pub(super) fn every(
+    what: &'static str,
+    player: &mut Player<'_>,
+    mut f: impl FnMut(&Frame) -> Result<(), Error>,
+) -> Result<Summary, Error> {
     let (mut summary, frames) = (Summary::default(), player.frames);
-    let bar = progress("play", u64::from(frames));
+    let bar = progress::bar(what, u64::from(frames));
     while let Some(frame) = player.next()? {
         summary.add(frame, frames);
-        f(frame).map_err(|source| Error::Write { path: PathBuf::from("output"), source })?;
+        f(frame)?;
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -148,50 +149,57 @@ fn shown(frame: &Frame, flesh: bool) -> (&[[f32; 3]], &[[f32; 3]]) {
     if flesh { (&frame.flesh, &frame.flesh_normals) } else { (&frame.skinned, &frame.skinned_normals) }
 }
 
-fn array(out: &Path, player: &mut Player<'_>, flesh: bool) -> Result<Summary, Error> {
-    let mut result = Ok(Summary::default());
+fn array(arguments: &Arguments, run: &mut Run<'_>) -> Result<Summary, Error> {
+    let (out, flesh) = (arguments.out.as_path(), !arguments.no_flesh);
+    let unwritten = |source| Error::Write { path: out.to_owned(), source };
+    let vertices = run.model.vertex_count();
+    let mut player = run.player()?;
     export::write_atomic(out, |file| {
-        let vertices = player.character().asset().meta.vertices as usize;
         npy::header(file, player.frames, vertices)?;
-        let mut failed = None;
-        result = every(player, |frame| {
-            npy::frame(file, shown(frame, flesh).0).inspect_err(|e| {
-                failed = Some(e.kind());
-            })
-        });
-        failed.map_or(Ok(()), |kind| Err(io::Error::from(kind)))
-    })?;
-    result
+        let write = |frame: &Frame| npy::frame(file, shown(frame, flesh).0).map_err(unwritten);
+        every("play", &mut player, write).map_err(io::Error::other)
+    })
 }
 
-fn animation(out: &Path, model: &Model, player: &mut Player<'_>, flesh: bool) -> Result<Summary, Error> {
+fn animation(arguments: &Arguments, run: &mut Run<'_>) -> Result<Summary, Error> {
+    let (model, mut player) = (run.model, run.player()?);
     let (kept, fps) = (morph::kept(player.frames as usize), player.fps);
     let mut frames = Vec::new();
-    let summary = every(player, |frame| {
+    let summary = every("play", &mut player, |frame| {
         if kept.contains(&(frame.index as usize)) {
-            let (positions, normals) = shown(frame, flesh);
+            let (positions, normals) = shown(frame, !arguments.no_flesh);
             #[allow(clippy::cast_precision_loss, reason = "frames")]
             let time = frame.index as f32 / fps;
             frames.push(MorphFrame { time, positions: positions.to_vec(), normals: normals.to_vec() });
         }
         Ok(())
     })?;
-    export::write_bytes(out, &morph::to_glb(model, clip_name(&player.motion), &frames)?)?;
+    export::write_bytes(&arguments.out, &morph::to_glb(model, player.motion.name(), &frames)?)?;
     Ok(summary)
 }
 
-fn figures(out: &Path, model: &Model, player: &mut Player<'_>) -> Result<Summary, Error> {
+fn replay(arguments: &Arguments, run: &mut Run<'_>) -> Result<Summary, Error> {
+    let mut player = run.player()?;
+    player.record()?;
+    let summary = every("play", &mut player, |_| Ok(()))?;
+    let (bytes, _) = player.recorded()?;
+    export::write_bytes(&arguments.out, &bytes)?;
+    Ok(summary)
+}
+
+fn figures(arguments: &Arguments, run: &mut Run<'_>) -> Result<Summary, Error> {
+    let (model, mut player) = (run.model, run.player()?);
     let mut rows = Vec::new();
-    let summary = every(player, |frame| {
+    let summary = every("play", &mut player, |frame| {
         let largest = frame.heat.iter().copied().fold(0.0, f32::max);
         rows.push(json!({"frame": frame.index, "time": frame.time, "largest_offset": largest}));
         Ok(())
     })?;
     let text = json!({
-        "character": model.name, "clip": clip_name(&player.motion), "fps": player.fps,
+        "character": model.name, "clip": player.motion.name(), "fps": player.fps,
         "largest_offset": summary.largest, "mean_offset": summary.mean, "frames": rows,
     })
     .to_string();
-    export::write_atomic(out, |file| writeln!(file, "{text}"))?;
+    export::write_atomic(&arguments.out, |file| writeln!(file, "{text}"))?;
     Ok(summary)
 }

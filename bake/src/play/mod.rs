@@ -5,8 +5,11 @@ mod shake;
 use crate::model::{Model, Property};
 use crate::{Error, pack};
 use glam::{DMat4, DQuat, DVec3};
+use sinew::kernel::clip::Channels;
 use sinew::kernel::clip::{Interpolation, Keys};
-use sinew::{Asset, Character, Root, Tunables};
+use sinew::replay::{Finished, RecordError, Tape};
+use sinew::stage::pose::{self, Skeleton};
+use sinew::{Affine, Asset, Character, Pose, Root, Tunables};
 
 pub use shake::shake;
 
@@ -47,6 +50,17 @@ pub enum Motion {
     Shake,
 }
 
+impl Motion {
+    /// The clip's name, or what the shake is called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Clip { name, .. } => name,
+            Self::Shake => "built-in shake",
+        }
+    }
+}
+
 /// One frame of a character, model space.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
@@ -83,7 +97,13 @@ pub struct Player<'a> {
     pub frames: u32,
     next: u32,
     frame: Frame,
+    /// Joints in the rest pose, relative to the root.
+    rest: Vec<Affine>,
+    tape: Option<Tape<Vec<u8>>>,
 }
+
+/// Frames between the snapshots of a recording.
+const SNAPSHOT_EVERY: u32 = 60;
 
 impl<'a> Player<'a> {
     /// Prepares `asset` of `model` in `memory` (see [`Character::required_len`]).
@@ -129,8 +149,17 @@ impl<'a> Player<'a> {
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 3.6 million")]
         let frames = libm::roundf(seconds * settings.fps).max(1.0) as u32;
-        let mut player =
-            Self { model, character, motion, fps: settings.fps, frames, next: 0, frame: Frame::default() };
+        let mut player = Self {
+            model,
+            character,
+            motion,
+            fps: settings.fps,
+            frames,
+            next: 0,
+            frame: Frame::default(),
+            rest: rest_joints(&asset),
+            tape: None,
+        };
         player.warm_up()?;
         Ok(player)
     }
@@ -144,15 +173,42 @@ impl<'a> Player<'a> {
         Ok(())
     }
 
-    fn failed(&self, error: sinew::StepError) -> Error {
+    fn failed(&self, error: impl core::fmt::Display) -> Error {
         let place = format!("frame {}", self.next);
         Error::unusable(self.model.name.as_str(), place, error.to_string(), "check the clip of this file")
+    }
+
+    /// Records from here on.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unusable`] when the recorder cannot start.
+    pub fn record(&mut self) -> Result<(), Error> {
+        let tape = Tape::begin(&self.character, SNAPSHOT_EVERY, Vec::new()).map_err(|e| self.failed(e))?;
+        self.tape = Some(tape);
+        Ok(())
+    }
+
+    /// Ends the recording: its bytes, number of frames and digest.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unusable`] when nothing was recorded.
+    pub fn recorded(&mut self) -> Result<(Vec<u8>, Finished), Error> {
+        let tape = self.tape.take().ok_or_else(|| self.failed("nothing was recorded"))?;
+        tape.finish(&self.character).map_err(|e| self.failed(e))
     }
 
     /// The character.
     #[must_use]
     pub fn character(&self) -> &Character<'a> {
         &self.character
+    }
+
+    /// What is played, for people: clip, number of frames, rate.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        format!("{}, {} frames at {} Hz", self.motion.name(), self.frames, self.fps)
     }
 
     /// The pose of frame `i`: time in the clip and root.
@@ -179,9 +235,14 @@ impl<'a> Player<'a> {
         }
         let (time, root) = self.pose(self.next);
         let dt = 1.0 / self.fps;
-        let stepped = match self.motion {
-            Motion::Clip { index, .. } => self.character.step_clip(index, time, root, dt),
-            Motion::Shake => self.character.step_rest(root, dt),
+        let (character, still) = (&mut self.character, Pose { root, root_from_joint: &self.rest });
+        let stepped = match (&self.motion, &mut self.tape) {
+            (Motion::Clip { index, .. }, None) => {
+                character.step_clip(*index, time, root, dt).map_err(RecordError::from)
+            }
+            (Motion::Clip { index, .. }, Some(tape)) => tape.step_clip(character, *index, time, root, dt),
+            (Motion::Shake, None) => character.step(still, dt).map_err(RecordError::from),
+            (Motion::Shake, Some(tape)) => tape.step(character, still, dt),
         };
         stepped.map_err(|e| self.failed(e))?;
         self.fill(time, root);
@@ -215,6 +276,16 @@ impl<'a> Player<'a> {
         };
         frame.rigid = rigid(self.model, clip, time, &root);
     }
+}
+
+/// Joints of the rest pose, by the runtime's own composition.
+fn rest_joints(asset: &Asset<'_>) -> Vec<Affine> {
+    let identity = sinew::math::affine::IDENTITY;
+    let skeleton = Skeleton { parents: asset.parents, rest: asset.node_rest, joint_node: asset.joint_node };
+    let (mut local, mut model) = (vec![[0.0; 10]; asset.parents.len()], vec![identity; asset.parents.len()]);
+    let mut out = vec![identity; asset.joint_node.len()];
+    pose::sample(skeleton, Channels::default(), 0.0, &mut out, (&mut local, &mut model));
+    out
 }
 
 /// Root-space positions to model space, where the root moves.

@@ -1,115 +1,159 @@
-//! The recipe: where a character's flesh is and how soft, from geometry and skin weights alone.
+//! The "auto" recipe: where flesh is, how soft it is and which parts stay put, from geometry and skin weights.
 //!
 //! ```text
-//! weld ─▶ depth over the bones ─▶ smooth over the surface ─▶ mirror ─▶ regions
+//! Model ─▶ surface (welded) ─▶ symmetry ─▶ skeleton ─▶ anatomy (trunk, limbs, head, tail, ears)
+//!                                                          │
+//!        Flesh ◀─ painted, VRM ◀─ region, rules ◀─ smooth ◀─ field (flesh depth, place on tail and ear, protrusion)
 //! ```
 //!
-//! Flesh is what lies deeper over its bone than the joint's own bony radius (bellies, cheeks), or hangs
-//! far beyond the last joint of a chain (ears, tails). Everything is measured in body sizes. A painted
-//! `_SINEW` attribute or rules by joint name override it.
+//! All lengths inside are in body sizes, so that a model scaled 0.01 or 100 has the same flesh. Softness is
+//! computed per welded point: vertices that a file splits get the same bits.
 
-mod depth;
+mod anatomy;
+mod field;
+mod grid;
 mod mirror;
+mod protrusion;
 mod region;
 mod rules;
+mod skeleton;
+mod smooth;
 mod surface;
 
-pub use region::Region;
-pub use rules::{Recipe, Rule};
+use serde::{Deserialize, Serialize};
 
 use crate::{Error, Model};
+use field::ease;
+pub use mirror::Mirror;
+use mirror::Symmetry;
+pub use region::Region;
+use region::Regions;
+pub use rules::{Recipe, Rule};
+use skeleton::Skeleton;
 use surface::Surface;
 
-/// Where flesh is.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// Where flesh is and how it swings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flesh {
     /// Softness of each render vertex, `0..=1`; 0 follows skinning exactly.
     pub softness: Vec<f32>,
-    /// Region of each render vertex, an index into `regions`.
+    /// Region of each render vertex: index into `regions`.
     pub region: Vec<u8>,
-    /// Regions, at most 16.
+    /// At most 16 regions. Where two meet, softness is 0 on both sides (unless it was painted).
     pub regions: Vec<Region>,
-    /// Diagonal of the rest pose's bounding box, model units.
+    /// Body size, model units: the diagonal of the box around the rest pose's triangles.
     pub body_size: f64,
-    /// Whether the rest pose mirrors at `x = 0`.
-    pub symmetric: bool,
-    /// What a person should know.
+    /// The plane that maps the character onto itself, if there is one.
+    pub mirror: Option<Mirror>,
+    /// What a person may want to know, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// Finds the flesh of `model`.
+/// Decides where a character's flesh is.
 ///
 /// # Errors
 ///
-/// [`Error::Unusable`] for a model without extent or without vertices.
+/// [`Error::Unusable`] if the skin has no vertices or no size, a position is not finite, a painted softness is not
+/// in `0..=1`, or the recipe's values are out of range.
 pub fn flesh(model: &Model, recipe: &Recipe) -> Result<Flesh, Error> {
+    recipe.check()?;
     let surface = Surface::new(model)?;
+    let painted = painted(model, &surface)?;
+    let symmetry = Symmetry::new(&surface);
+    let mut skeleton = Skeleton::new(model, &surface);
+    anatomy::classify(&mut skeleton, &surface, &symmetry);
+    let mut field = field::measure(&surface, &skeleton, &symmetry);
+    // Strays so far away that their distances overflow are no flesh.
+    field.soft.iter_mut().filter(|s| !s.is_finite()).for_each(|s| *s = 0.0);
+    symmetry.average(&mut field.soft);
+    let pieces = smooth::pieces(&surface);
+    let mut soft = field.soft.clone();
+    smooth::even(&surface, &mut soft);
+    let mut regions = Regions::new(&skeleton, &field, &symmetry, &pieces);
+    let shares = region::shares(model, &surface, recipe);
     let mut notes = Vec::new();
-    let mut softness = depth::softness(model, &surface);
-    surface.join_small_parts(&mut softness);
-    surface.smooth(&mut softness);
-    stretch(&mut softness);
-    let partners = mirror::partners(&surface);
-    if let Some(partners) = &partners {
-        mirror::average(&mut softness, partners);
+    apply_softness(recipe, &shares, &mut soft, &mut notes);
+    regions.apply(recipe, &shares);
+    smooth::limit_slope(&surface, &mut soft);
+    smooth::fade_borders(&surface, &regions.of, &mut soft);
+    smooth::unite(&pieces, &mut soft);
+    symmetry.average(&mut soft);
+    leave_springs(model, &surface, &mut soft, &mut notes);
+    regions.split_limbs(&surface, &field, recipe, &soft);
+    regions.drop_unused();
+    let was_painted = painted.iter().flatten().count();
+    if was_painted > 0 {
+        notes.push(format!("{was_painted} points have painted softness"));
     }
-    let painted = paint(model, &surface, &mut softness);
-    rules::apply(model, &surface, recipe, &mut softness);
-    leave_spring_bones(model, &surface, &mut softness, &mut notes);
-    if painted > 0 {
-        notes.push(format!("{painted} vertices are painted by _SINEW"));
+    for (soft, painted) in soft.iter_mut().zip(painted) {
+        *soft = painted.unwrap_or(*soft);
     }
-    for s in &mut softness {
-        *s = (*s * f64::from(recipe.softness)).clamp(0.0, 1.0);
-        *s = if *s < 1e-3 { 0.0 } else { *s };
-    }
-    let (region_of_point, regions) = region::regions(model, &surface, &softness, recipe);
-    if softness.iter().all(|s| *s <= 0.0) {
-        notes.push("no flesh was found: paint _SINEW or add a rule".to_owned());
-    }
+    #[expect(clippy::cast_possible_truncation, reason = "softness is f32")]
+    let softness = surface.point_of.iter().map(|p| soft[*p] as f32).collect();
     Ok(Flesh {
-        softness: surface.spread(&softness).map(crate::pack::narrow).collect(),
-        region: surface.spread(&region_of_point).collect(),
-        regions,
+        softness,
+        region: surface.point_of.iter().map(|p| regions.of[*p]).collect(),
+        regions: regions.list,
         body_size: surface.size,
-        symmetric: partners.is_some(),
+        mirror: symmetry.mirror,
         notes,
     })
 }
 
-/// Cuts off the faint rim of smoothing and lets the softest place reach 1.
-fn stretch(softness: &mut [f64]) {
-    let most = softness.iter().copied().fold(0.0, f64::max);
-    if most > 0.02 {
-        let rim = 0.06 * most;
-        softness.iter_mut().for_each(|s| *s = ((*s - rim) / (most - rim)).clamp(0.0, 1.0));
-    }
-}
-
-/// Replaces the softness where the file is painted; how many render vertices are.
-fn paint(model: &Model, surface: &Surface, softness: &mut [f64]) -> usize {
-    let (mut vertex, mut painted) = (0, 0);
-    for p in &model.primitives {
-        for i in 0..p.positions.len() {
-            if let Some(value) = p.painted.as_ref().and_then(|v| v.get(i)) {
-                softness[surface.point_of_vertex[vertex]] = f64::from(value.clamp(0.0, 1.0));
-                painted += 1;
-            }
-            vertex += 1;
+/// Applies the softness of a recipe.
+fn apply_softness(recipe: &Recipe, shares: &[Vec<f64>], soft: &mut [f64], notes: &mut Vec<String>) {
+    let all = f64::from(recipe.softness);
+    soft.iter_mut().for_each(|s| *s = (*s * all).min(1.0));
+    for (n, (rule, shares)) in recipe.rules.iter().zip(shares).enumerate() {
+        if shares.iter().all(|s| *s <= 0.0) {
+            let joints = rule.joints.join(", ");
+            notes.push(format!(
+                "{}: rule {}: no joint that moves skin is named {joints}",
+                recipe.file,
+                n + 1
+            ));
+        }
+        for (soft, share) in soft.iter_mut().zip(shares) {
+            let wanted = *soft * rule.multiply.map_or(1.0, f64::from);
+            let wanted = rule.softness.map_or(wanted, f64::from);
+            *soft = (*soft + (wanted - *soft) * share.min(1.0)).clamp(0.0, 1.0);
         }
     }
-    painted
 }
 
-/// Lets VRM's own spring bones alone: their share of a vertex's weights is taken from its softness.
-fn leave_spring_bones(model: &Model, surface: &Surface, softness: &mut [f64], notes: &mut Vec<String>) {
+/// Leaves alone what spring bones move already.
+fn leave_springs(model: &Model, surface: &Surface, soft: &mut [f64], notes: &mut Vec<String>) {
     let Some(vrm) = &model.vrm else { return };
-    let springs: Vec<bool> = model.joints.iter().map(|j| vrm.spring_nodes.contains(&j.node)).collect();
-    let mut left = 0;
-    for (point, s) in softness.iter_mut().enumerate() {
-        let share: f64 = surface.weights[point].iter().filter(|(j, _)| springs[*j]).map(|(_, w)| w).sum();
-        left += usize::from(share > 0.5);
-        *s *= if share > 0.5 { 0.0 } else { 1.0 - 2.0 * share };
+    let mut springs = vec![false; model.nodes.len()];
+    vrm.spring_nodes.iter().filter(|n| **n < model.nodes.len()).for_each(|n| springs[*n] = true);
+    let mut left = vec![false; soft.len()];
+    for (i, row) in surface.weights.iter().enumerate() {
+        let share: f64 = row.iter().filter(|(n, _)| springs[*n]).map(|(_, w)| w).sum();
+        soft[i] *= 1.0 - ease(0.0, 0.5, share);
+        left[i] = share >= 0.5;
     }
-    notes.push(format!("{left} points follow VRM spring bones: they are left to them"));
+    let vertices = surface.point_of.iter().filter(|p| left[**p]).count();
+    notes.push(format!("{vertices} vertices are moved by VRM spring bones and left to them"));
+}
+
+/// Painted softness of each point: the mean over its painted vertices.
+fn painted(model: &Model, surface: &Surface) -> Result<Vec<Option<f64>>, Error> {
+    let mut sums = vec![(0.0, 0.0); surface.points.len()];
+    let mut start = 0;
+    for primitive in &model.primitives {
+        for (v, value) in primitive.painted.iter().flatten().enumerate() {
+            if !(0.0..=1.0).contains(value) || v >= primitive.positions.len() {
+                return Err(Error::unusable(
+                    &model.name,
+                    format!("mesh {}, primitive {}, vertex {v}, _SINEW", primitive.mesh, primitive.primitive),
+                    format!("painted softness is {value}"),
+                    "paint values from 0 to 1, one a vertex",
+                ));
+            }
+            let sum = &mut sums[surface.point_of[start + v]];
+            *sum = (sum.0 + f64::from(*value), sum.1 + 1.0);
+        }
+        start += primitive.positions.len();
+    }
+    Ok(sums.into_iter().map(|(sum, count)| (count > 0.0).then(|| sum / count)).collect())
 }

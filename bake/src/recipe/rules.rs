@@ -1,179 +1,167 @@
-//! The recipe file: knobs over the automatic choice, in TOML.
-//!
-//! ```toml
-//! softness = 1.0        # factor of all softness, 0..=1 (default 1)
-//! frequency = 1.0       # factor of all frequencies (default 1)
-//! damping = 0.22        # damping ratio (default: chosen)
-//! gain = 1.0            # factor of all offsets (default 1)
-//!
-//! [[rule]]
-//! joints = ["tail*", "Ear?"]   # names of joints; * any text, ? one character, case does not matter
-//! softness = 1.0               # softness of what they move, 0..=1
-//! frequency = 1.8              # Hz, of regions named after them
-//! ```
+//! Recipes: what a person may say about a character's flesh, as TOML.
 
-use super::region::Region;
-use super::surface::Surface;
-use crate::{Error, Model};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+use wildmatch::WildMatch;
 
-/// A recipe; [`Recipe::default`] is fully automatic.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields, default)]
+use crate::Error;
+
+/// Most rules of a recipe that give parameters of their own: with the automatic regions they make 16.
+const MOST_RULES: usize = 10;
+
+/// Wishes of a person; the default has none.
+///
+/// ```
+/// let recipe = sinew_bake::recipe::Recipe::from_toml("fox.toml", r#"
+///     softness = 0.8            # all flesh moves a fifth less
+///     [[rule]]
+///     joints = ["tail*"]        # shell patterns, upper and lower case alike
+///     region = "tail"
+///     frequency = 1.5           # Hz
+///     [[rule]]
+///     joints = ["*hand*", "*finger*"]
+///     softness = 0.0            # follows the skeleton exactly
+/// "#)?;
+/// assert_eq!(recipe.rules.len(), 2);
+/// # Ok::<(), sinew_bake::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Recipe {
-    /// Factor of all softness, `0..=1`.
+    /// File name, for errors and notes.
+    #[serde(skip)]
+    pub file: String,
+    /// Multiplies every softness that is not painted; 0..=10, default 1.
     pub softness: f32,
-    /// Factor of all frequencies, above 0.
+    /// Multiplies the frequency of every automatic region; 0.1..=10, default 1.
     pub frequency: f32,
-    /// Damping ratio, where it is not to be chosen.
-    pub damping: Option<f32>,
-    /// Factor of all offsets, not negative.
+    /// Multiplies the damping ratio of every automatic region; 0..=10, default 1.
+    pub damping: f32,
+    /// Multiplies the gain of every automatic region; 0..=10, default 1.
     pub gain: f32,
-    /// Rules by joint name, later ones override earlier ones.
+    /// Multiplies the largest offset of every automatic region; 0..=10, default 1.
+    pub max_offset: f32,
+    /// Rules for joints, in order; a later rule overrides an earlier one.
     #[serde(rename = "rule")]
     pub rules: Vec<Rule>,
 }
 
-impl Default for Recipe {
-    fn default() -> Self {
-        Self { softness: 1.0, frequency: 1.0, damping: None, gain: 1.0, rules: Vec::new() }
-    }
+/// A wish for the skin that some joints move. What is not given stays automatic.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Rule {
+    /// Names of joints: `*` any letters, `?` one letter, upper and lower case alike.
+    pub joints: Vec<String>,
+    /// Softness of what these joints alone move, 0..=1; what they share with others is blended.
+    pub softness: Option<f32>,
+    /// Multiplies the automatic softness, 0..=10.
+    pub multiply: Option<f32>,
+    /// Name of the region; rules with the same name share one.
+    pub region: Option<String>,
+    /// Frequency, Hz, 0.1..=30.
+    pub frequency: Option<f32>,
+    /// Damping ratio, 0..=2.
+    pub damping: Option<f32>,
+    /// Gain, 0..=10.
+    pub gain: Option<f32>,
+    /// Largest offset, body sizes, 0..=1.
+    pub max_offset: Option<f32>,
 }
 
-/// A rule for joints by name.
-#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields, default)]
-pub struct Rule {
-    /// Patterns of joint names.
-    pub joints: Vec<String>,
-    /// Softness of what the joints move, `0..=1`.
-    pub softness: Option<f32>,
-    /// Frequency, Hz.
-    pub frequency: Option<f32>,
-    /// Damping ratio.
-    pub damping: Option<f32>,
-    /// Factor of the offset.
-    pub gain: Option<f32>,
+impl Default for Recipe {
+    fn default() -> Self {
+        let file = String::new();
+        Self {
+            file,
+            softness: 1.0,
+            frequency: 1.0,
+            damping: 1.0,
+            gain: 1.0,
+            max_offset: 1.0,
+            rules: Vec::new(),
+        }
+    }
 }
 
 impl Recipe {
-    /// Reads a recipe file called `name`.
+    /// Reads a recipe; `file` is its name, for errors.
     ///
     /// # Errors
     ///
-    /// [`Error::Unusable`] for text that is no recipe, or numbers out of range.
-    pub fn from_toml(name: &str, text: &str) -> Result<Self, Error> {
-        let recipe: Self = toml::from_str(text).map_err(|e| {
-            let line = e.span().map_or(1, |s| text.get(..s.start).unwrap_or("").lines().count().max(1));
-            Error::unusable(
-                name,
-                format!("line {line}"),
-                e.message().to_owned(),
-                "see the knobs in the manual",
-            )
+    /// [`Error::Unusable`] naming the file, the line or the key, and what to write instead.
+    pub fn from_toml(file: &str, text: &str) -> Result<Self, Error> {
+        let mut recipe: Self = toml::from_str(text).map_err(|error| {
+            let place = error.span().map_or(String::from("content"), |span| {
+                let before = text.get(..span.start).unwrap_or(text);
+                format!("line {}", before.matches('\n').count() + 1)
+            });
+            let problem = error.message().replace('\n', " ");
+            Error::unusable(file, place, problem, "see the keys in the documentation of recipes")
         })?;
-        let refuse = |place: String, range: &str| {
-            Err(Error::unusable(name, place, "the value is out of range", format!("give {range}")))
-        };
-        let in_unit = |x: f32| (0.0..=1.0).contains(&x);
-        if !in_unit(recipe.softness) {
-            return refuse("softness".into(), "0 to 1");
-        }
-        if !(recipe.frequency > 0.0 && recipe.frequency <= 20.0) {
-            return refuse("frequency".into(), "a factor above 0, at most 20");
-        }
-        for (i, rule) in recipe.rules.iter().enumerate() {
-            if rule.joints.is_empty() {
-                return refuse(format!("rule {i}, joints"), "at least one joint name");
-            }
-            if !rule.softness.is_none_or(in_unit) {
-                return refuse(format!("rule {i}, softness"), "0 to 1");
-            }
-            if !rule.frequency.is_none_or(|f| (0.0..=60.0).contains(&f)) {
-                return refuse(format!("rule {i}, frequency"), "0 to 60 Hz");
-            }
-        }
-        let factors =
-            recipe.rules.iter().flat_map(|r| [r.damping, r.gain]).chain([recipe.damping, Some(recipe.gain)]);
-        if !factors.flatten().all(|x| (0.0..=100.0).contains(&x)) {
-            return refuse("damping and gain".into(), "0 to 100");
-        }
+        file.clone_into(&mut recipe.file);
+        recipe.check()?;
         Ok(recipe)
     }
 
-    /// Applies the parameters to a region.
-    pub(super) fn tune(&self, region: &mut Region) {
-        region.frequency *= self.frequency;
-        region.damping = self.damping.unwrap_or(region.damping);
-        region.gain *= self.gain;
-        for rule in self.rules.iter().filter(|r| r.matches(&region.name)) {
-            region.frequency = rule.frequency.unwrap_or(region.frequency);
-            region.damping = rule.damping.unwrap_or(region.damping);
-            region.gain = rule.gain.unwrap_or(region.gain);
+    /// Checks that all values are in their ranges.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unusable`] naming the first key that is out of its range.
+    pub fn check(&self) -> Result<(), Error> {
+        let keys = [
+            ("softness", self.softness, 0.0),
+            ("frequency", self.frequency, 0.1),
+            ("damping", self.damping, 0.0),
+            ("gain", self.gain, 0.0),
+            ("max_offset", self.max_offset, 0.0),
+        ];
+        for (key, value, least) in keys {
+            self.in_range(key, value, least, 10.0)?;
         }
+        for (n, rule) in self.rules.iter().enumerate() {
+            let place = |key: &str| format!("rule {}, {key}", n + 1);
+            if rule.joints.is_empty() {
+                let remedy = "name at least one joint: joints = [\"tail*\"]";
+                return Err(Error::unusable(&self.file, place("joints"), "no joint is named", remedy));
+            }
+            let keys = [
+                ("softness", rule.softness, 0.0, 1.0),
+                ("multiply", rule.multiply, 0.0, 10.0),
+                ("frequency", rule.frequency, 0.1, 30.0),
+                ("damping", rule.damping, 0.0, 2.0),
+                ("gain", rule.gain, 0.0, 10.0),
+                ("max_offset", rule.max_offset, 0.0, 1.0),
+            ];
+            for (key, value, least, most) in keys {
+                value.map_or(Ok(()), |value| self.in_range(&place(key), value, least, most))?;
+            }
+        }
+        if self.rules.iter().filter(|r| r.tunes()).count() > MOST_RULES {
+            let problem = format!("more than {MOST_RULES} rules have parameters of their own");
+            return Err(Error::unusable(&self.file, "rule", problem, "give several joints one rule"));
+        }
+        Ok(())
+    }
+
+    fn in_range(&self, place: &str, value: f32, least: f32, most: f32) -> Result<(), Error> {
+        if (least..=most).contains(&value) {
+            return Ok(());
+        }
+        let remedy = format!("write a number from {least} to {most}");
+        Err(Error::unusable(&self.file, place, format!("{value} is out of range"), remedy))
     }
 }
 
 impl Rule {
-    fn matches(&self, name: &str) -> bool {
-        self.joints.iter().any(|pattern| glob(&pattern.to_lowercase(), &name.to_lowercase()))
-    }
-}
-
-/// Whether `name` fits `pattern` with `*` and `?`.
-fn glob(pattern: &str, name: &str) -> bool {
-    let mut rest = pattern.chars();
-    match rest.next() {
-        None => name.is_empty(),
-        Some('*') => {
-            name.char_indices().map(|(i, _)| i).chain([name.len()]).any(|i| glob(rest.as_str(), &name[i..]))
-        }
-        Some(c) => {
-            let mut chars = name.chars();
-            chars.next().is_some_and(|n| c == '?' || c == n) && glob(rest.as_str(), chars.as_str())
-        }
-    }
-}
-
-/// Mixes the softness of each point with what the rules say of its joints, by their weights.
-pub(super) fn apply(model: &Model, surface: &Surface, recipe: &Recipe, softness: &mut [f64]) {
-    let rule_of = |joint: usize| {
-        let name = &model.nodes[model.joints[joint].node].name;
-        recipe.rules.iter().rev().filter(|r| r.matches(name)).find_map(|r| r.softness)
-    };
-    let of_joint: Vec<Option<f32>> = (0..model.joints.len()).map(rule_of).collect();
-    for (s, weights) in softness.iter_mut().zip(&surface.weights) {
-        let chosen = *s;
-        *s = weights.iter().map(|(j, w)| w * of_joint[*j].map_or(chosen, f64::from)).sum();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn patterns_fit_names() {
-        for (pattern, name, fits) in
-            [("tail*", "tail_03", true), ("*ear?", "leftearl", true), ("ear", "ears", false), ("*", "", true)]
-        {
-            assert_eq!(glob(pattern, name), fits, "{pattern} {name}");
-        }
+    /// Whether it gives a region of its own.
+    pub(super) fn tunes(&self) -> bool {
+        let given = [self.frequency, self.damping, self.gain, self.max_offset];
+        self.region.is_some() || given.iter().any(Option::is_some)
     }
 
-    #[test]
-    fn bad_recipes_name_the_place() {
-        for (text, place) in [
-            ("softness = 2.0", "softness"),
-            ("sofness = 1.0", "line 1"),
-            ("\n[[rule]]\nsoftness = 0.5", "rule 0, joints"),
-            ("[[rule]]\njoints = [\"a\"]\nfrequency = -1.0", "rule 0, frequency"),
-        ] {
-            let error = Recipe::from_toml("r.toml", text).unwrap_err().to_string();
-            assert!(error.contains("r.toml") && error.contains(place), "{error}");
-        }
-        assert!(
-            Recipe::from_toml("r.toml", "damping = 0.3\n[[rule]]\njoints = ['tail*']\nsoftness = 1").is_ok()
-        );
+    /// Whether it names a joint.
+    pub(super) fn names(&self, joint: &str) -> bool {
+        let joint = joint.to_lowercase();
+        self.joints.iter().any(|pattern| WildMatch::new(&pattern.to_lowercase()).matches(&joint))
     }
 }

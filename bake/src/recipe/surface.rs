@@ -1,212 +1,228 @@
-//! The surface of the rest pose with split vertices welded, as a graph.
+//! The skin as one surface: render vertices welded by position, in units of the body size.
 
-use crate::{Error, Model};
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::DVec3;
-use std::collections::BTreeMap;
 
-/// Welding tolerance, body sizes.
+use super::grid::Grid;
+use crate::{Error, Model};
+
+/// Render vertices closer than this (body sizes) are one point.
 const WELD: f64 = 1e-6;
-/// Surfaces closer than this belong together, body sizes.
-const TOUCH: f64 = 0.012;
-/// Parts smaller than this are moved as one, body sizes.
-const SMALL: f64 = 0.12;
-/// Softness is smoothed over about this length, body sizes.
-const BLUR: f64 = 0.035;
+/// Points of different shells closer than this (body sizes) move together.
+const BRIDGE: f64 = 0.015;
 
-/// Points of the welded rest pose, model space.
+/// A welded surface; lengths in body sizes, areas in body sizes squared.
 #[derive(Debug)]
 pub(super) struct Surface {
-    /// Diagonal of the bounding box.
+    /// Body size in model units: diagonal of the box around all triangles.
     pub(super) size: f64,
-    /// Positions of points.
-    pub(super) points: Vec<DVec3>,
+    /// Where that box has its smallest coordinates, model units.
+    pub(super) corner: DVec3,
     /// Point of each render vertex.
-    pub(super) point_of_vertex: Vec<usize>,
-    /// Joints and weights of each point.
+    pub(super) point_of: Vec<usize>,
+    /// Rest positions; the box's corner with the smallest coordinates is the origin.
+    pub(super) points: Vec<DVec3>,
+    /// Position in bind space of the first render vertex of each point, model units.
+    pub(super) bind: Vec<DVec3>,
+    /// Nodes that move a point, ascending, with weights that sum to 1.
     pub(super) weights: Vec<Vec<(usize, f64)>>,
-    /// Neighbours of each point by edges, ascending.
-    pub(super) neighbours: Vec<Vec<usize>>,
-    /// Connected part of each point.
-    pub(super) part: Vec<usize>,
+    /// A third of the area of the triangles around a point.
+    pub(super) area: Vec<f64>,
+    /// Neighbors along triangle edges, ascending, with lengths.
+    pub(super) edges: Vec<Vec<(usize, f64)>>,
+    /// `edges`, and bridges between shells that touch.
+    pub(super) links: Vec<Vec<(usize, f64)>>,
+    /// Shell (connected component of `edges`) of each point.
+    pub(super) shell: Vec<usize>,
+    /// Number of shells.
+    pub(super) shells: usize,
 }
 
 impl Surface {
-    /// Welds the rest pose.
+    /// Welds all skinned primitives of a model.
     pub(super) fn new(model: &Model) -> Result<Self, Error> {
-        let positions = model.rest_positions();
-        let low = positions.iter().copied().reduce(DVec3::min).unwrap_or_default();
-        let high = positions.iter().copied().reduce(DVec3::max).unwrap_or_default();
-        let size = (high - low).length();
-        if !(size > 0.0 && size.is_finite()) {
+        let rest = model.rest_positions();
+        if let Some(vertex) = rest.iter().position(|p| !p.is_finite()) {
             return Err(Error::unusable(
-                model.name.as_str(),
-                "rest pose",
-                "the skinned mesh has no extent",
-                "check the scale of the armature",
+                &model.name,
+                format!("vertex {vertex}"),
+                "its rest position is not a finite number",
+                "repair the node transforms and inverse bind matrices",
             ));
         }
-        let mut known: BTreeMap<[i64; 3], usize> = BTreeMap::new();
-        let (mut points, mut point_of_vertex) = (Vec::new(), Vec::new());
-        for p in &positions {
-            let next = points.len();
-            let point = *known.entry(cell(*p - low, WELD * size)).or_insert(next);
-            if point == next {
-                points.push(*p);
-            }
-            point_of_vertex.push(point);
+        let (low, high) = bounds(model, &rest);
+        let size = (high - low).length();
+        if !(size.is_normal() && size > 0.0) {
+            return Err(Error::unusable(
+                &model.name,
+                "rest pose",
+                "the skin has no size: all triangles fall on one point",
+                "check the scale of the nodes and the inverse bind matrices",
+            ));
         }
-        let weights = weights(model, &point_of_vertex, points.len());
-        let neighbours = neighbours(model, &point_of_vertex, points.len());
-        let part = parts(&neighbours);
-        Ok(Self { size, points, point_of_vertex, weights, neighbours, part })
+        let scaled: Vec<DVec3> = rest.iter().map(|p| (*p - low) / size).collect();
+        let (point_of, first) = weld(&scaled);
+        let points: Vec<DVec3> = first.iter().map(|v| scaled[*v]).collect();
+        let bind = bind_positions(model);
+        let triangles = triangles(model, &point_of);
+        let mut surface = Self {
+            size,
+            corner: low,
+            bind: first.iter().map(|v| bind[*v]).collect(),
+            weights: weights(model, &point_of, points.len()),
+            area: areas(&points, &triangles),
+            edges: edges(&points, &triangles),
+            links: Vec::new(),
+            shell: Vec::new(),
+            shells: 0,
+            point_of,
+            points,
+        };
+        (surface.shell, surface.shells) = shells(&surface.edges);
+        surface.links = surface.bridged();
+        Ok(surface)
     }
 
-    /// A value of each point, spread to the render vertices.
-    pub(super) fn spread<T: Copy>(&self, values: &[T]) -> impl Iterator<Item = T> {
-        self.point_of_vertex.iter().map(|p| values[*p])
-    }
-
-    /// Heaviest joint of a point.
-    pub(super) fn dominant(&self, point: usize) -> usize {
-        let heavier = |a: &&(usize, f64), b: &&(usize, f64)| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0));
-        self.weights[point].iter().max_by(heavier).map_or(0, |(j, _)| *j)
-    }
-
-    /// Gives each small part (an eye, a button) one softness: that of the large surface nearest to it.
-    pub(super) fn join_small_parts(&self, softness: &mut [f64]) {
-        let count = self.part.iter().max().map_or(0, |p| p + 1);
-        let mut bounds = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
-        for (p, part) in self.points.iter().zip(&self.part) {
-            bounds[*part] = (bounds[*part].0.min(*p), bounds[*part].1.max(*p));
+    /// Edges plus, from each point, the way to the nearest point of each other shell that touches it.
+    fn bridged(&self) -> Vec<Vec<(usize, f64)>> {
+        let mut links = self.edges.clone();
+        if self.shells < 2 {
+            return links;
         }
-        let small: Vec<bool> = bounds.iter().map(|(a, b)| (*b - *a).length() < SMALL * self.size).collect();
-        if small.iter().all(|s| *s) {
-            return;
-        }
-        for (part, (a, b)) in bounds.iter().enumerate().filter(|(i, _)| small[*i]) {
-            let center = (*a + *b) * 0.5;
-            let large = (0..self.points.len()).filter(|i| !small[self.part[*i]]);
-            let distance = |i: usize| (self.points[i] - center).length_squared();
-            let nearest = large.min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-            let value = nearest.map_or(0.0, |i| softness[i]);
-            for (i, s) in softness.iter_mut().enumerate().filter(|(i, _)| self.part[*i] == part) {
-                debug_assert!(self.part[i] == part, "filtered");
-                *s = value;
-            }
-        }
-    }
-
-    /// Diffuses softness over the surface and between parts that touch.
-    pub(super) fn smooth(&self, softness: &mut [f64]) {
-        let touching = self.touching();
-        let edges = self.neighbours.iter().enumerate();
-        let lengths: Vec<f64> = edges
-            .flat_map(|(i, n)| n.iter().map(move |j| (self.points[i] - self.points[*j]).length()))
-            .collect();
-        #[allow(clippy::cast_precision_loss, reason = "counts")]
-        let mean = lengths.iter().sum::<f64>() / (lengths.len().max(1) as f64);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-        let rounds = (2.0 * (BLUR * self.size / mean.max(1e-9 * self.size))).clamp(2.0, 12.0) as usize;
-        for _ in 0..rounds * rounds / 4 + 2 {
-            let old = softness.to_vec();
-            for (i, s) in softness.iter_mut().enumerate() {
-                let around = self.neighbours[i].iter().chain(&touching[i]);
-                let (sum, n) = around.fold((0.0, 0.0), |(sum, n), j| (sum + old[*j], n + 1.0));
-                if n > 0.0 {
-                    *s = 0.5 * old[i] + 0.5 * sum / n;
+        let grid = Grid::new(&self.points, BRIDGE);
+        let mut bridges = BTreeSet::new();
+        for (i, p) in self.points.iter().enumerate() {
+            let mut nearest: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
+            for j in grid.around(*p).filter(|j| self.shell[*j] != self.shell[i]) {
+                let distance = p.distance(self.points[j]);
+                let best = nearest.entry(self.shell[j]).or_insert((BRIDGE, usize::MAX));
+                if distance < best.0 {
+                    *best = (distance, j);
                 }
             }
+            bridges.extend(nearest.values().filter(|n| n.1 != usize::MAX).map(|n| (i.min(n.1), i.max(n.1))));
         }
-    }
-
-    /// For each point, the nearest points of other parts within reach; both ways.
-    fn touching(&self) -> Vec<Vec<usize>> {
-        let reach = TOUCH * self.size;
-        let mut grid: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
-        for (i, p) in self.points.iter().enumerate() {
-            grid.entry(cell(*p, reach)).or_default().push(i);
+        for (i, j) in bridges {
+            let length = self.points[i].distance(self.points[j]).max(WELD);
+            links[i].push((j, length));
+            links[j].push((i, length));
         }
-        let mut out = vec![Vec::new(); self.points.len()];
-        for (i, p) in self.points.iter().enumerate() {
-            let [x, y, z] = cell(*p, reach);
-            let around = (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]);
-            let others =
-                around.filter_map(|c| grid.get(&c)).flatten().filter(|j| self.part[**j] != self.part[i]);
-            let distance = |j: usize| (self.points[j] - *p).length();
-            let nearest = others.copied().min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-            if let Some(j) = nearest.filter(|j| distance(*j) < reach) {
-                out[i].push(j);
-                out[j].push(i);
-            }
-        }
-        out
+        links
     }
 }
 
-/// Cell of a grid of width `width`.
-fn cell(p: DVec3, width: f64) -> [i64; 3] {
-    #[allow(clippy::cast_possible_truncation, reason = "saturating")]
-    (p / width).round().to_array().map(|x| x as i64)
+/// Box around all vertices of triangles; around all vertices where there is no triangle.
+fn bounds(model: &Model, rest: &[DVec3]) -> (DVec3, DVec3) {
+    let mut start = 0;
+    let mut used = Vec::new();
+    for primitive in &model.primitives {
+        used.extend(primitive.indices.iter().flatten().map(|v| rest[start + *v as usize]));
+        start += primitive.positions.len();
+    }
+    let seen = if used.is_empty() { rest } else { &used };
+    let first = seen.first().copied().unwrap_or_default();
+    seen.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
 }
 
-/// Influences of each point: those of its first render vertex.
-fn weights(model: &Model, point_of_vertex: &[usize], count: usize) -> Vec<Vec<(usize, f64)>> {
-    let mut out = vec![Vec::new(); count];
-    let mut vertex = 0;
-    for p in &model.primitives {
-        for (joints, weights) in p.joints.chunks_exact(p.stride).zip(p.weights.chunks_exact(p.stride)) {
-            let row: &mut Vec<(usize, f64)> = &mut out[point_of_vertex[vertex]];
-            vertex += 1;
-            if row.is_empty() {
-                let pairs = joints.iter().zip(weights).filter(|(_, w)| **w > 0.0);
-                row.extend(pairs.map(|(j, w)| (usize::from(*j), f64::from(*w))));
-            }
-        }
-    }
-    out
-}
-
-fn neighbours(model: &Model, point_of_vertex: &[usize], count: usize) -> Vec<Vec<usize>> {
-    let mut out = vec![Vec::new(); count];
-    let mut first = 0;
-    for p in &model.primitives {
-        for triangle in &p.indices {
-            let [a, b, c] = triangle.map(|v| point_of_vertex[first + v as usize]);
-            for (i, j) in [(a, b), (b, c), (c, a)] {
-                if i != j {
-                    out[i].push(j);
-                    out[j].push(i);
-                }
-            }
-        }
-        first += p.positions.len();
-    }
-    for n in &mut out {
-        n.sort_unstable();
-        n.dedup();
-    }
-    out
-}
-
-/// Connected parts of a graph, numbered in order of their first point.
-pub(super) fn parts(neighbours: &[Vec<usize>]) -> Vec<usize> {
-    let mut part = vec![usize::MAX; neighbours.len()];
-    let mut count = 0;
-    for start in 0..neighbours.len() {
-        if part[start] != usize::MAX {
+/// Point of each vertex, and the first vertex of each point.
+fn weld(positions: &[DVec3]) -> (Vec<usize>, Vec<usize>) {
+    let grid = Grid::new(positions, WELD);
+    let mut point_of = vec![usize::MAX; positions.len()];
+    let mut first = Vec::new();
+    for (i, p) in positions.iter().enumerate() {
+        if point_of[i] != usize::MAX {
             continue;
         }
-        let mut stack = vec![start];
-        part[start] = count;
-        while let Some(i) = stack.pop() {
-            for j in &neighbours[i] {
-                if part[*j] == usize::MAX {
-                    part[*j] = count;
-                    stack.push(*j);
+        for j in grid.around(*p) {
+            if point_of[j] == usize::MAX && p.distance(positions[j]) <= WELD {
+                point_of[j] = first.len();
+            }
+        }
+        first.push(i);
+    }
+    (point_of, first)
+}
+
+fn bind_positions(model: &Model) -> Vec<DVec3> {
+    let positions = model.primitives.iter().flat_map(|p| &p.positions);
+    positions.map(|p| DVec3::from_array(p.map(f64::from))).collect()
+}
+
+fn triangles(model: &Model, point_of: &[usize]) -> Vec<[usize; 3]> {
+    let mut start = 0;
+    let mut out = Vec::new();
+    for primitive in &model.primitives {
+        out.extend(primitive.indices.iter().map(|t| t.map(|v| point_of[start + v as usize])));
+        start += primitive.positions.len();
+    }
+    out
+}
+
+fn weights(model: &Model, point_of: &[usize], points: usize) -> Vec<Vec<(usize, f64)>> {
+    let mut sums: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); points];
+    let mut vertex = 0;
+    for primitive in &model.primitives {
+        let joints = primitive.joints.chunks_exact(primitive.stride);
+        for (joints, weights) in joints.zip(primitive.weights.chunks_exact(primitive.stride)) {
+            for (joint, weight) in joints.iter().zip(weights).filter(|(_, w)| **w > 0.0) {
+                let node = model.joints[usize::from(*joint)].node;
+                *sums[point_of[vertex]].entry(node).or_default() += f64::from(*weight);
+            }
+            vertex += 1;
+        }
+    }
+    let normalized = |row: BTreeMap<usize, f64>| {
+        let sum: f64 = row.values().sum();
+        row.into_iter().map(|(node, w)| (node, w / sum)).collect()
+    };
+    sums.into_iter().map(normalized).collect()
+}
+
+fn areas(points: &[DVec3], triangles: &[[usize; 3]]) -> Vec<f64> {
+    let mut area = vec![0.0; points.len()];
+    for [a, b, c] in triangles {
+        let third = (points[*b] - points[*a]).cross(points[*c] - points[*a]).length() / 6.0;
+        for v in [a, b, c] {
+            area[*v] += third;
+        }
+    }
+    area
+}
+
+fn edges(points: &[DVec3], triangles: &[[usize; 3]]) -> Vec<Vec<(usize, f64)>> {
+    let mut seen = vec![BTreeSet::new(); points.len()];
+    for [a, b, c] in triangles {
+        for (i, j) in [(*a, *b), (*b, *c), (*c, *a)].into_iter().filter(|(i, j)| i != j) {
+            seen[i].insert(j);
+            seen[j].insert(i);
+        }
+    }
+    let lengths = |(i, row): (usize, BTreeSet<usize>)| {
+        row.into_iter().map(|j| (j, points[i].distance(points[j]).max(WELD))).collect()
+    };
+    seen.into_iter().enumerate().map(lengths).collect()
+}
+
+/// Connected components: the number of each point's, in order of their first points; and how many.
+pub(super) fn shells(edges: &[Vec<(usize, f64)>]) -> (Vec<usize>, usize) {
+    let mut shell = vec![usize::MAX; edges.len()];
+    let mut count = 0;
+    for start in 0..edges.len() {
+        if shell[start] != usize::MAX {
+            continue;
+        }
+        let mut open = vec![start];
+        shell[start] = count;
+        while let Some(i) = open.pop() {
+            for (j, _) in &edges[i] {
+                if shell[*j] == usize::MAX {
+                    shell[*j] = count;
+                    open.push(*j);
                 }
             }
         }
         count += 1;
     }
-    part
+    (shell, count)
 }

@@ -1,164 +1,171 @@
-//! Pixels: a depth buffer, triangles, and the way down to eight bits.
+//! Which triangle a sample sees: a depth buffer of triangle numbers.
+//!
+//! Colors come later, once a visible sample (see `shade`). The crate `euc` was tried and left: it shades every
+//! covered sample anew and asserts on triangles that are seen edge-on.
 
-use glam::{DVec3, Vec3};
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "sample coordinates, clamped to the buffer"
+)]
 
-/// Samples a side of a pixel.
-pub(super) const SAMPLES: usize = 2;
+use core::ops::Range;
 
-/// Linear colours with depth, `SAMPLES` times as large as the picture each way.
+/// No triangle.
+pub(super) const NOTHING: u32 = u32::MAX;
+
+/// A buffer of samples; the greatest nearness wins, the first triangle among equals.
 #[derive(Clone, Debug)]
-pub struct Canvas {
-    /// Pixels of the picture.
-    pub width: usize,
-    /// Pixels of the picture.
-    pub height: usize,
-    color: Vec<Vec3>,
-    depth: Vec<f32>,
+pub(super) struct Samples {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// Linear in the picture: the inverse distance of a perspective, the negative distance of a parallel view.
+    pub(super) nearness: Vec<f32>,
+    /// Number of the triangle, or [`NOTHING`].
+    pub(super) triangle: Vec<u32>,
 }
 
-/// A corner of a triangle on the canvas: position in samples, inverse depth, and what is interpolated.
+/// Barycentric coordinates over the picture: affine functions of x and y.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
-    pub(super) at: DVec3,
-    pub(super) normal: Vec3,
-    pub(super) uv: [f32; 2],
-    pub(super) value: f32,
+pub(super) struct Edges {
+    /// `(value, slope in x, slope in y)` of the weights of the first two corners, at the origin.
+    weights: [[f32; 3]; 2],
 }
 
-impl Canvas {
-    /// A picture of `width × height` pixels in one linear colour.
-    #[must_use]
-    pub fn new(width: usize, height: usize, color: [f32; 3]) -> Self {
-        let n = width * height * SAMPLES * SAMPLES;
-        Self { width, height, color: vec![Vec3::from_array(color); n], depth: vec![0.0; n] }
-    }
-
-    /// Height in samples.
-    pub(super) fn rows(&self) -> usize {
-        self.height * SAMPLES
-    }
-
-    fn columns(&self) -> usize {
-        self.width * SAMPLES
-    }
-
-    /// Draws a triangle; `shade` gives the colour at interpolated normal, uv and value.
-    pub(super) fn triangle(&mut self, corners: [Corner; 3], shade: impl Fn(Vec3, [f32; 2], f32) -> Vec3) {
-        let columns = self.columns();
-        self.cover(corners, |canvas, i, weights| {
-            let w: [f32; 3] = core::array::from_fn(|k| crate::pack::narrow(weights[k] * corners[k].at.z));
-            let inverse_depth = w[0] + w[1] + w[2];
-            if inverse_depth > canvas.depth[i] {
-                let w = w.map(|x| x / inverse_depth);
-                let normal = corners[0].normal * w[0] + corners[1].normal * w[1] + corners[2].normal * w[2];
-                let mix = |f: fn(&Corner) -> f32| {
-                    f(&corners[0]) * w[0] + f(&corners[1]) * w[1] + f(&corners[2]) * w[2]
-                };
-                canvas.depth[i] = inverse_depth;
-                canvas.color[i] = shade(normal, [mix(|c| c.uv[0]), mix(|c| c.uv[1])], mix(|c| c.value));
-            }
-        });
-        debug_assert!(columns > 0, "an empty canvas");
-    }
-
-    /// Calls `at` with index and barycentric weights of every sample that a triangle covers.
-    fn cover(&mut self, corners: [Corner; 3], mut at: impl FnMut(&mut Self, usize, [f64; 3])) {
-        let [a, b, c] = corners.map(|c| c.at);
-        let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-        if area == 0.0 || !area.is_finite() {
-            return;
+impl Edges {
+    /// Weights of a triangle, corners `(x, y, …)` in samples; `None` where it has no area.
+    pub(super) fn new([a, b, c]: [[f32; 3]; 3]) -> Option<Self> {
+        let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+        let inverse = 1.0 / area;
+        if !inverse.is_finite() {
+            return None;
         }
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the canvas")]
-        let range = |values: [f64; 3], most: usize| {
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min).floor().max(0.0) as usize;
-            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max).ceil().max(0.0) as usize;
-            low.min(most)..high.min(most)
+        let edge = |p: [f32; 3], q: [f32; 3]| {
+            let (dx, dy) = ((p[1] - q[1]) * inverse, (q[0] - p[0]) * inverse);
+            [-(dx * p[0] + dy * p[1]), dx, dy]
         };
-        let columns = self.columns();
-        for y in range([a.y, b.y, c.y], self.rows()) {
-            for x in range([a.x, b.x, c.x], columns) {
-                #[allow(clippy::cast_precision_loss, reason = "pixels")]
-                let (px, py) = (x as f64 + 0.5, y as f64 + 0.5);
-                let edge = |p: DVec3, q: DVec3| ((q.x - p.x) * (py - p.y) - (q.y - p.y) * (px - p.x)) / area;
-                let weights = [edge(b, c), edge(c, a), edge(a, b)];
-                if weights.iter().all(|w| *w >= 0.0) {
-                    at(self, y * columns + x, weights);
+        Some(Self { weights: [edge(b, c), edge(c, a)] })
+    }
+
+    /// Slopes of the three weights in x.
+    fn slopes(&self) -> [f32; 3] {
+        let [u, v] = self.weights.map(|w| w[1]);
+        [u, v, -u - v]
+    }
+
+    /// Weights of the three corners at `(x, y)`.
+    pub(super) fn at(&self, x: f32, y: f32) -> [f32; 3] {
+        let [u, v] = self.weights.map(|[base, dx, dy]| base + dx * x + dy * y);
+        [u, v, 1.0 - u - v]
+    }
+}
+
+impl Samples {
+    /// An empty buffer.
+    pub(super) fn new(width: usize, height: usize) -> Self {
+        let n = width * height;
+        Self { width, height, nearness: vec![f32::NEG_INFINITY; n], triangle: vec![NOTHING; n] }
+    }
+
+    /// Draws triangle `number` with corners `(x, y, nearness)`, samples and any unit.
+    pub(super) fn draw(&mut self, number: u32, corners: [[f32; 3]; 3]) {
+        let Some(edges) = Edges::new(corners) else { return };
+        let [xs, ys, zs] = [0, 1, 2].map(|axis: usize| corners.map(|c| c[axis]));
+        let columns = span(xs, self.width);
+        let slopes = edges.slopes();
+        let slope = (0..3).map(|i| slopes[i] * zs[i]).sum::<f32>();
+        for y in span(ys, self.height) {
+            let weights = edges.at(0.0, y as f32 + 0.5);
+            let inside = row_inside(weights, slopes, columns.clone());
+            if inside.is_empty() {
+                continue;
+            }
+            let near = (0..3).map(|i| weights[i] * zs[i]).sum::<f32>();
+            let row = y * self.width;
+            let depths = &mut self.nearness[row + inside.start..row + inside.end];
+            let numbers = &mut self.triangle[row + inside.start..row + inside.end];
+            for ((x, depth), owner) in inside.zip(depths).zip(numbers) {
+                let near = near + slope * (x as f32 + 0.5);
+                if near > *depth {
+                    (*depth, *owner) = (near, number);
                 }
             }
         }
     }
+}
 
-    /// Marks the samples that a triangle covers in `mask`.
-    pub(super) fn mark(&mut self, corners: [Corner; 3], mask: &mut [f32]) {
-        self.cover(corners, |_, i, _| mask[i] = 1.0);
+/// The samples of a row whose weights are not negative, given the weights at its left end and their slopes.
+///
+/// A sample on a common edge belongs to both triangles: no gap for rounding to open.
+fn row_inside(weights: [f32; 3], slopes: [f32; 3], columns: Range<usize>) -> Range<usize> {
+    const TOLERANCE: f32 = 1e-5;
+    let (mut low, mut high) = (columns.start as f32, columns.end as f32);
+    for (w, slope) in weights.into_iter().zip(slopes) {
+        let zero = -(w + TOLERANCE) / slope;
+        if slope > 0.0 {
+            low = low.max(zero);
+        } else if slope < 0.0 {
+            high = high.min(zero);
+        } else if w < -TOLERANCE {
+            return 0..0;
+        }
+    }
+    // Centers lie at halves: the first is not before `low`, the last not beyond `high`.
+    let first = libm::ceilf(low - 0.5).max(0.0) as usize;
+    let last = (libm::floorf(high - 0.5) + 1.0).max(0.0) as usize;
+    first..last.min(columns.end).max(first)
+}
+
+/// Samples whose centers lie between the least and the greatest of `v`, within `0..size`.
+fn span(v: [f32; 3], size: usize) -> Range<usize> {
+    let low = v[0].min(v[1]).min(v[2]) - 0.5;
+    let high = v[0].max(v[1]).max(v[2]) + 0.5;
+    let last = (high.max(0.0) as usize).min(size);
+    // `as` rounds towards zero, which is down here.
+    let first = if low > 0.0 { low as usize } else { 0 };
+    first.min(last)..last
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn count(samples: &Samples, number: u32) -> usize {
+        samples.triangle.iter().filter(|&&t| t == number).count()
     }
 
-    /// Darkens every sample by `strength` times the blurred mask.
-    pub(super) fn shadow(&mut self, mask: &[f32], strength: f32, radius: usize) {
-        let (columns, rows) = (self.columns(), self.rows());
-        let mut soft = mask.to_vec();
-        for _ in 0..2 {
-            soft = blur(&soft, columns, rows, radius);
-        }
-        for (color, m) in self.color.iter_mut().zip(soft) {
-            *color *= 1.0 - strength * m;
-        }
-    }
-
-    /// Averages the samples of each pixel and encodes: sRGB, 8 bits, row by row.
-    #[must_use]
-    pub fn to_rgb(&self) -> Vec<u8> {
-        let columns = self.columns();
-        let mut out = Vec::with_capacity(self.width * self.height * 3);
-        for y in 0..self.height {
-            for x in 0..self.width {
-                let mut sum = Vec3::ZERO;
-                for k in 0..SAMPLES * SAMPLES {
-                    sum += self.color[(y * SAMPLES + k / SAMPLES) * columns + x * SAMPLES + k % SAMPLES];
-                }
-                #[allow(clippy::cast_precision_loss, reason = "4")]
-                let mean = sum / (SAMPLES * SAMPLES) as f32;
-                out.extend(mean.to_array().map(encode));
+    #[test]
+    fn two_triangles_cover_a_square_without_a_gap() {
+        let mut samples = Samples::new(64, 64);
+        let [a, b, c, d] = [[3.3, 4.7, 1.0], [60.1, 5.2, 1.0], [58.9, 61.4, 1.0], [2.8, 59.6, 1.0]];
+        samples.draw(0, [a, b, c]);
+        samples.draw(1, [a, c, d]);
+        for y in 7..58 {
+            for x in 5..57 {
+                assert_ne!(samples.triangle[y * 64 + x], NOTHING, "gap at {x}, {y}");
             }
         }
-        out
     }
-}
 
-/// Moving average over rows, then columns.
-fn blur(mask: &[f32], columns: usize, rows: usize, radius: usize) -> Vec<f32> {
-    let pass = |from: &[f32], lines: usize, length: usize, index: &dyn Fn(usize, usize) -> usize| {
-        let mut out = vec![0.0; from.len()];
-        #[allow(clippy::cast_precision_loss, reason = "pixels")]
-        let width = (2 * radius + 1) as f32;
-        for line in 0..lines {
-            let mut sum = 0.0;
-            for i in 0..length + radius {
-                sum += if i < length { from[index(line, i)] } else { 0.0 };
-                sum -= if i > 2 * radius { from[index(line, i - 2 * radius - 1)] } else { 0.0 };
-                if i >= radius {
-                    out[index(line, i - radius)] = sum / width;
-                }
-            }
+    #[test]
+    fn the_nearer_triangle_wins_in_either_order_and_winding() {
+        let near = [[0.0, 0.0, 2.0], [20.0, 0.0, 2.0], [0.0, 20.0, 2.0]];
+        let far = [[0.0, 20.0, 1.0], [20.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
+        for order in [[(0, near), (1, far)], [(1, far), (0, near)]] {
+            let mut samples = Samples::new(32, 32);
+            order.into_iter().for_each(|(number, corners)| samples.draw(number, corners));
+            assert_eq!((count(&samples, 0) > 150, count(&samples, 1)), (true, 0));
         }
-        out
-    };
-    let across = pass(mask, rows, columns, &|line, i| line * columns + i);
-    pass(&across, columns, rows, &|line, i| i * columns + line)
-}
-
-/// Linear light to sRGB code.
-pub(super) fn encode(x: f32) -> u8 {
-    let x = x.clamp(0.0, 1.0);
-    let s = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::powf(x, 1.0 / 2.4) - 0.055 };
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
-    {
-        (s * 255.0 + 0.5) as u8
     }
-}
 
-/// sRGB code to linear light.
-pub(super) fn decode(x: u8) -> f32 {
-    let s = f32::from(x) / 255.0;
-    if s <= 0.040_45 { s / 12.92 } else { libm::powf((s + 0.055) / 1.055, 2.4) }
+    #[test]
+    fn degenerate_and_absurd_triangles_are_left_out() {
+        let mut samples = Samples::new(8, 8);
+        samples.draw(0, [[1.0, 1.0, 1.0], [4.0, 4.0, 1.0], [6.0, 6.0, 1.0]]);
+        samples.draw(1, [[f32::NAN; 3], [4.0, 0.0, 1.0], [6.0, 6.0, 1.0]]);
+        samples.draw(2, [[1e30, 0.0, 1.0], [-1e30, 1.0, 1.0], [0.0, 1e30, 1.0]]);
+        samples.draw(3, [[-9.0, -9.0, 1.0], [-5.0, -9.0, 1.0], [-9.0, -5.0, 1.0]]);
+        assert_eq!((count(&samples, 0), count(&samples, 1), count(&samples, 3)), (0, 0, 0));
+    }
 }

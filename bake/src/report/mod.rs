@@ -1,15 +1,16 @@
-//! The report of a bake: one page with pictures and figures.
+//! Reports: what the baker made of a character, as a page for people.
+//!
+//! Pictures are inside the page and plots are drawn as SVG, so that the page can be sent around as one file. It is
+//! readable on a phone, in light and dark, printed, and without JavaScript.
 
-use crate::recipe::Flesh;
-use crate::{Error, Model};
-use std::path::Path;
+mod character;
+mod motion;
+mod page;
+mod svg;
 
-/// Writes the report of a character into `folder`.
-///
-/// # Errors
-///
-/// [`Error::Write`] when the folder cannot be written.
-pub fn character(model: &Model, flesh: &Flesh, asset: &[u32], folder: &Path) -> Result<(), Error> {
-    let _ = (model, flesh, asset, folder);
-    Ok(())
-}
+pub use character::character;
+pub use page::{Bar, Block, Fact, Image, Picture, Report, Section};
+pub use svg::{Histogram, Plot, Series};
+
+/// Colors of lines and regions.
+pub const COLORS: usize = 8;

@@ -200,7 +200,8 @@ fn advance_four<L: Lanes>(step: &Step, x1: &[f32; 4], f1: &[f32; 4], state: [&mu
     let (y1, u1) = (row(&step.y), row(&step.u));
     // A component at rest is set to rest, so that nothing trembles and no subnormal lingers.
     let (zero, [y_rest, u_rest]) = (L::splat(0.0), step.rest.map(L::splat));
-    let settle = |a: L| L::select_lt(y1.abs(), y_rest, L::select_lt(u1.abs(), u_rest, zero, a), a);
+    let resting = y1.abs().lt(y_rest) & u1.abs().lt(u_rest);
+    let settle = |a: L| L::select(resting, zero, a);
     let sigma = d * inverse;
     *y = settle(y1).to_array();
     *v = (settle(u1) + sigma).to_array();

@@ -4,19 +4,28 @@
 //! agree bit for bit. There is no fused multiply-add and no reciprocal estimate here, and none may
 //! be added. The scalar type is the definition, compiled everywhere as the oracle of the tests.
 
+pub(crate) mod four;
 mod scalar;
 mod vector;
 
-use core::ops::{Add, Div, Mul, Sub};
+use core::ops::{Add, BitAnd, Div, Mul, Sub};
 
 #[cfg(test)]
 pub(crate) use scalar::Scalar;
-pub(crate) use vector::Vector as F32x4;
+
+/// The lanes of this target. Without vector registers `wide` falls back to arrays too, but slower ones.
+#[cfg(any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128"))]
+pub(crate) type F32x4 = vector::Vector;
+/// The lanes of this target. Without vector registers `wide` falls back to arrays too, but slower ones.
+#[cfg(not(any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128")))]
+pub(crate) type F32x4 = scalar::Scalar;
 
 /// What a kernel may ask of four lanes.
 pub(crate) trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
+    /// A truth value a lane.
+    type Mask: Copy + BitAnd<Output = Self::Mask>;
     /// All lanes equal `x`.
     fn splat(x: f32) -> Self;
     /// Lanes from an array.
@@ -27,8 +36,12 @@ pub(crate) trait Lanes:
     fn sqrt(self) -> Self;
     /// Absolute values.
     fn abs(self) -> Self;
-    /// Lane by lane: `value` where `a < b`, else `otherwise`; a NaN compares as false.
-    fn select_lt(a: Self, b: Self, value: Self, otherwise: Self) -> Self;
+    /// Where `self < other`; false beside a NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// Lane by lane: `value` where the mask is set, else `otherwise`.
+    fn select(mask: Self::Mask, value: Self, otherwise: Self) -> Self;
+    /// Whether all lanes of the mask are set.
+    fn all(mask: Self::Mask) -> bool;
     /// Columns of a 4×4 block given by its rows.
     fn transpose(rows: [Self; 4]) -> [Self; 4];
 }
@@ -49,7 +62,9 @@ mod tests {
                 let run = |v: [[f32; 4]; 7]| v.map(bits);
                 fn all<L: Lanes>(a: [f32; 4], b: [f32; 4]) -> [[f32; 4]; 7] {
                     let (a, b) = (L::from_array(a), L::from_array(b));
-                    let select = L::select_lt(a, b, a, b);
+                    let (less, small) = (a.lt(b), a.lt(L::splat(1.0)));
+                    let count = if L::all(less) { a + b } else { b };
+                    let select = L::select(less & small, a, count);
                     let turned = L::transpose([a, b, a + b, a - b]);
                     [a + b, a - b, a * b, a / b, a.abs().sqrt(), select, turned[2]].map(L::to_array)
                 }

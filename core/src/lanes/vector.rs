@@ -1,7 +1,9 @@
-//! The lanes of this target, by the crate `wide`: SSE2, NEON, simd128, or an array where there is none.
+//! Lanes in a vector register, by the crate `wide`: SSE2, NEON or simd128.
+
+#![allow(dead_code, reason = "where there are no vector registers only tests use it")]
 
 use super::Lanes;
-use core::ops::{Add, Div, Mul, Sub};
+use core::ops::{Add, BitAnd, Div, Mul, Sub};
 use wide::f32x4;
 
 /// Four lanes in a vector register.
@@ -40,7 +42,21 @@ impl Div for Vector {
     }
 }
 
+/// All bits of a lane, or none.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mask(f32x4);
+
+impl BitAnd for Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, rhs: Self) -> Self {
+        Self(self.0 & rhs.0)
+    }
+}
+
 impl Lanes for Vector {
+    type Mask = Mask;
+
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self(f32x4::splat(x))
@@ -67,12 +83,23 @@ impl Lanes for Vector {
     }
 
     #[inline(always)]
-    fn select_lt(a: Self, b: Self, value: Self, otherwise: Self) -> Self {
-        Self(a.0.simd_lt(b.0).bitselect(value.0, otherwise.0))
+    fn lt(self, other: Self) -> Mask {
+        Mask(self.0.simd_lt(other.0))
+    }
+
+    #[inline(always)]
+    fn select(mask: Mask, value: Self, otherwise: Self) -> Self {
+        Self(mask.0.bitselect(value.0, otherwise.0))
+    }
+
+    #[inline(always)]
+    fn all(mask: Mask) -> bool {
+        mask.0.all()
     }
 
     #[inline(always)]
     fn transpose(rows: [Self; 4]) -> [Self; 4] {
-        f32x4::transpose(rows.map(|r| r.0)).map(Self)
+        let [a, b, c, d] = f32x4::transpose([rows[0].0, rows[1].0, rows[2].0, rows[3].0]);
+        [Self(a), Self(b), Self(c), Self(d)]
     }
 }

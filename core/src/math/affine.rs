@@ -37,6 +37,13 @@ pub fn from_trs(translation: [f32; 3], rotation: [f32; 4], scale: [f32; 3]) -> A
     [vec3::scale(r[0], scale[0]), vec3::scale(r[1], scale[1]), vec3::scale(r[2], scale[2]), translation]
 }
 
+/// The rows of a map; the last column is the translation.
+#[inline(always)]
+#[must_use]
+pub fn to_rows(m: &Affine) -> [[f32; 4]; 3] {
+    [0, 1, 2].map(|r| m.map(|column| column[r]))
+}
+
 /// Whether every entry is finite.
 #[must_use]
 pub fn is_finite(m: &Affine) -> bool {

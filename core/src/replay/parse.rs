@@ -50,7 +50,7 @@ impl Header {
 }
 
 impl<'a> Replay<'a> {
-    /// Reads a replay and checks its structure and its inputs; outcomes and snapshots are checked by [`super::verify`].
+    /// Reads a replay and checks its structure and its inputs; outcomes and snapshots are checked by [`super::verify()`].
     ///
     /// # Errors
     ///

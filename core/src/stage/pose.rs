@@ -1,7 +1,7 @@
 //! Pose in, palette out; and what the root did since the last step.
 
 use crate::kernel::clip::{Channels, Property};
-use crate::kernel::skin::Columns;
+use crate::kernel::skin::Rows;
 use crate::math::affine::{self, Affine};
 use crate::math::{quat, vec3};
 
@@ -67,11 +67,11 @@ impl Root {
 /// # Panics
 ///
 /// If the lengths differ.
-pub fn palette(root_from_joint: &[Affine], joint_from_bind: &[Affine], out: &mut [Columns]) {
+pub fn palette(root_from_joint: &[Affine], joint_from_bind: &[Affine], out: &mut [Rows]) {
     let n = out.len();
     assert!(root_from_joint.len() == n && joint_from_bind.len() == n, "pose: lengths differ");
     for ((a, b), out) in root_from_joint.iter().zip(joint_from_bind).zip(out) {
-        *out = affine::mul(a, b).map(|[x, y, z]| [x, y, z, 0.0]); // padded to four lanes
+        *out = affine::to_rows(&affine::mul(a, b));
     }
 }
 

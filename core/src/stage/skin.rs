@@ -7,7 +7,8 @@
 //! `g` is gravity and wind in the root's frame, `B·g₀` the gravity that the authored shape already
 //! sags under, turned with the flesh: at rest they cancel, bent over they do not.
 
-use crate::kernel::skin::{self, Columns, Influences};
+use crate::kernel::skin::{self, Influences, LinearBlock, Rows};
+use crate::lanes::four::{self, three};
 use crate::lanes::{F32x4, Lanes};
 
 /// What [`targets`] writes, one a moving point.
@@ -17,8 +18,8 @@ pub struct Targets<'a> {
     pub positions: &'a mut [[f32; 3]],
     /// Accelerations, model units per s².
     pub accelerations: &'a mut [[f32; 3]],
-    /// Columns of the linear parts of the blended matrices.
-    pub linear: &'a mut [[[f32; 4]; 3]],
+    /// Linear parts of the blended maps, a block of four points each.
+    pub linear: &'a mut [LinearBlock],
 }
 
 /// Skins the moving points and finds their accelerations.
@@ -30,7 +31,7 @@ pub struct Targets<'a> {
 ///
 /// If the lengths differ.
 pub fn targets(
-    palette: &[Columns],
+    palette: &[Rows],
     influences: Influences<'_>,
     rest: &[[f32; 3]],
     (gravity, authored): ([f32; 3], [f32; 3]),
@@ -38,12 +39,10 @@ pub fn targets(
 ) {
     let Targets { positions, accelerations, linear } = out;
     skin::skin(palette, influences, rest, positions, linear);
-    assert!(accelerations.len() == linear.len(), "skin: lengths differ");
-    let [x, y, z] = authored.map(F32x4::splat);
-    let g = F32x4::from_array([gravity[0], gravity[1], gravity[2], 0.0]);
-    for (f, m) in accelerations.iter_mut().zip(&*linear) {
-        let [a, b, c] = m.map(F32x4::from_array);
-        let [fx, fy, fz, _] = (g - ((a * x + b * y) + c * z)).to_array();
-        *f = [fx, fy, fz];
+    assert!(accelerations.len() == rest.len(), "skin: lengths differ");
+    let [gravity, authored] = [gravity, authored].map(|v| v.map(F32x4::splat));
+    for (k, linear) in linear.iter().enumerate() {
+        let turned = four::mul(&three(|c| three(|r| F32x4::from_array(linear[c][r]))), &authored);
+        four::store(three(|r| gravity[r] - turned[r]), accelerations, 4 * k);
     }
 }

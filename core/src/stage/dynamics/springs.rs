@@ -19,6 +19,14 @@ pub struct State<'a> {
     pub f: &'a mut [[f32; 3]],
 }
 
+/// Turns all `vectors`. One copy of the loop is enough.
+#[inline(never)]
+fn rotate(map: &Affine, vectors: &mut [[f32; 3]]) {
+    for vector in vectors {
+        *vector = affine::rotate(map, *vector);
+    }
+}
+
 impl State<'_> {
     /// The arrays, in the order in which they are saved and hashed.
     #[must_use]
@@ -31,10 +39,8 @@ impl State<'_> {
         for x in self.x.iter_mut() {
             *x = affine::transform(map, *x);
         }
-        for array in [&mut *self.y, &mut *self.v, &mut *self.slope, &mut *self.f] {
-            for vector in array {
-                *vector = affine::rotate(map, *vector);
-            }
+        for vectors in [&mut *self.y, &mut *self.v, &mut *self.slope, &mut *self.f] {
+            rotate(map, vectors);
         }
     }
 
