@@ -195,6 +195,8 @@ impl Model {
 
     /// Transforms of all nodes, model from node, from their local transforms.
     ///
+    /// In time linear in the nodes, however they are ordered.
+    ///
     /// # Panics
     ///
     /// If `local` is shorter than the list of nodes.
@@ -204,7 +206,8 @@ impl Model {
         for start in 0..self.nodes.len() {
             let mut chain = vec![start];
             while let Some(parent) = self.nodes[*chain.last().unwrap_or(&start)].parent {
-                if model_from_node[parent].is_some() || chain.contains(&parent) {
+                // A chain longer than the list goes round in a circle.
+                if model_from_node[parent].is_some() || chain.len() > self.nodes.len() {
                     break;
                 }
                 chain.push(parent);

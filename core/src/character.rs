@@ -19,6 +19,8 @@ use crate::workspace::{LengthError, Workspace};
 
 /// Offsets below this share of the body count as rest.
 const REST: f32 = 1e-7;
+/// Largest entry of a joint's transform. With an asset's largest numbers, cubed and stiff, it stays finite.
+const LARGEST_JOINT: f32 = 1e7;
 /// Time shorter than this, s, waits for the next step.
 const SHORTEST_STEP: f32 = 1e-5;
 
@@ -151,7 +153,7 @@ impl<'a> Character<'a> {
         if expected != found {
             return Err(StepError::JointCount(LengthError { expected, found }));
         }
-        let usable = |m: &Affine| m.as_flattened().iter().all(|x| float::abs(*x) <= 1e15);
+        let usable = |m: &Affine| m.as_flattened().iter().all(|x| float::abs(*x) <= LARGEST_JOINT);
         if let Some(i) = pose.root_from_joint.iter().position(|m| !usable(m)) {
             return Err(StepError::BadJoint(u32::try_from(i).unwrap_or(u32::MAX)));
         }

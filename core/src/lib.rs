@@ -52,3 +52,8 @@ pub use state::StateError;
 pub use step::{Digests, Pose, StepError, Stepped};
 pub use tunables::{Region, TunableError, Tunables};
 pub use workspace::LengthError;
+
+/// The README's examples are compiled too.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
