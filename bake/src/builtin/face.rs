@@ -15,18 +15,35 @@ pub(super) struct Feature {
     pub(super) joint: usize,
 }
 
+impl Feature {
+    /// Puts a feature of the left onto a side.
+    fn onto(&mut self, side: Side) {
+        for v in self.positions.iter_mut().chain(&mut self.normals) {
+            v.x *= side.sign();
+        }
+        if side == Side::Right {
+            for t in &mut self.triangles {
+                t.swap(1, 2);
+            }
+        }
+    }
+}
+
 /// Eyes: half axes to the side, upwards and outwards.
 const EYE: DVec3 = dvec3(0.072, 0.096, 0.040);
 /// How far an eye is sunk into the head.
 const EYE_SUNK: f64 = 0.008;
 /// Nose: half axes.
 const NOSE: DVec3 = dvec3(0.042, 0.028, 0.026);
+/// The line of a closed eye: half of its width, its height, its radius.
+const LID: DVec3 = dvec3(0.050, 0.022, 0.007);
 /// Radius of the line of the mouth.
 const MOUTH: f64 = 0.009;
 
 /// All features, left before right.
 pub(super) fn features(shape: &Shape) -> Vec<Feature> {
     let mut out: Vec<Feature> = Side::BOTH.into_iter().map(|side| eye(shape, side)).collect();
+    out.extend(Side::BOTH.map(|side| lid(shape, side)));
     out.push(nose(shape));
     out.push(mouth(shape));
     out
@@ -39,7 +56,6 @@ fn eye(shape: &Shape, side: Side) -> Feature {
     // Half way between the surface's normal and the direction of the face: a friendly, frontal look.
     let out = (normal + dvec3(0.0, 0.0, 0.55)).normalize();
     let mut feature = ellipsoid(p - normal * EYE_SUNK, EYE, out);
-    let across = |q: DVec3| q.x * side.sign();
     for (k, q) in feature.positions.iter().enumerate() {
         let d = *q - p;
         let right = DVec3::Y.cross(out).normalize();
@@ -47,14 +63,7 @@ fn eye(shape: &Shape, side: Side) -> Feature {
         let (x, y) = (d.dot(right) / EYE.x * side.sign(), d.dot(up) / EYE.y);
         feature.uvs[k] = eye_uv(x.clamp(-1.0, 1.0), y.clamp(-1.0, 1.0));
     }
-    for v in feature.positions.iter_mut().chain(&mut feature.normals) {
-        v.x = across(*v);
-    }
-    if side == Side::Right {
-        for t in &mut feature.triangles {
-            t.swap(1, 2);
-        }
-    }
+    feature.onto(side);
     feature.joint = index(Bone::Eye, side);
     feature
 }
@@ -67,37 +76,83 @@ fn nose(shape: &Shape) -> Feature {
     feature
 }
 
-/// A tube along a smile on the surface.
+/// A line along a smile on the surface.
 fn mouth(shape: &Shape) -> Feature {
-    const SEGMENTS: u32 = 20;
-    const SIDES: u32 = 6;
-    let line = |s: f64| {
+    const HALF: usize = 10;
+    let point = |k: usize| {
+        let t = real(k) / real(HALF);
         // Two arcs that meet under the nose.
-        let t = s.abs();
-        let x = 0.105 * s;
         let y = 0.902 - 0.028 * libm::sin(core::f64::consts::PI * t) + 0.020 * t * t;
-        shape.hit(dvec3(x, y, 0.6), DVec3::NEG_Z)
+        let (p, normal) = shape.hit(dvec3(0.105 * t, y, 0.6), DVec3::NEG_Z);
+        let normal = if k == 0 { normal.with_x(0.0).normalize() } else { normal };
+        Bead { center: p, normal, radius: MOUTH * (1.0 - 0.55 * t * t * t * t) }
     };
-    let mut out = Feature { joint: index(Bone::Head, Side::Left), ..Feature::default() };
-    for ring in 0..=SEGMENTS {
-        // Exactly odd about the middle.
-        let s = (f64::from(ring) - f64::from(SEGMENTS / 2)) / f64::from(SEGMENTS / 2);
-        let ((center, normal), ahead) = (line(s), line(s + 0.02).0 - line(s - 0.02).0);
-        let across = normal.cross(ahead).normalize();
-        let radius = MOUTH * (1.0 - 0.55 * s * s * s * s);
-        for k in 0..SIDES {
-            let (sine, cosine) = libm::sincos(core::f64::consts::TAU * f64::from(k) / f64::from(SIDES));
-            let n = normal * cosine + across * sine;
-            out.positions.push(center + n * radius);
+    let left: Vec<Bead> = (0..=HALF).map(point).collect();
+    let right = left[1..].iter().rev().map(Bead::mirrored);
+    let mut feature = cord(&right.chain(left.iter().copied()).collect::<Vec<_>>());
+    feature.joint = index(Bone::Head, Side::Left);
+    feature
+}
+
+/// The line of a closed eye: within the open eye, so that it shows when the eye has sunk.
+fn lid(shape: &Shape, side: Side) -> Feature {
+    const HALF: u32 = 7;
+    let joint = position(Bone::Eye, Side::Left);
+    let point = |k: u32| {
+        let s = (f64::from(k) - f64::from(HALF)) / f64::from(HALF);
+        let from = dvec3(joint.x + LID.x * s, joint.y + LID.y * (0.6 - s * s), 0.6);
+        let (p, normal) = shape.hit(from, DVec3::NEG_Z);
+        Bead { center: p, normal, radius: LID.z * (1.0 - 0.5 * s * s * s * s) }
+    };
+    let mut feature = cord(&(0..=2 * HALF).map(point).collect::<Vec<_>>());
+    feature.onto(side);
+    feature.joint = index(Bone::Head, Side::Left);
+    feature
+}
+
+/// A point of a cord's middle line.
+#[derive(Clone, Copy, Debug)]
+struct Bead {
+    center: DVec3,
+    /// Unit normal of the surface below.
+    normal: DVec3,
+    radius: f64,
+}
+
+impl Bead {
+    fn mirrored(&self) -> Self {
+        let flip = |v: DVec3| v.with_x(-v.x);
+        Self { center: flip(self.center), normal: flip(self.normal), radius: self.radius }
+    }
+}
+
+/// A round cord along beads on the surface, closed at both ends; mirrored beads give its mirror image.
+fn cord(beads: &[Bead]) -> Feature {
+    const SIDES: usize = 6;
+    let mut out = Feature::default();
+    let last = beads.len() - 1;
+    let ahead = |k: usize| (beads[(k + 1).min(last)].center - beads[k.saturating_sub(1)].center).normalize();
+    for (k, bead) in beads.iter().enumerate() {
+        let across = bead.normal.cross(ahead(k)).normalize();
+        for side in 0..SIDES {
+            let (sine, cosine) = libm::sincos(core::f64::consts::TAU * real(side) / real(SIDES));
+            let n = bead.normal * cosine + across * sine;
+            out.positions.push(bead.center + n * bead.radius);
             out.normals.push(n);
         }
     }
-    let sides = SIDES as usize;
-    for ring in 0..SEGMENTS as usize {
-        for k in 0..sides {
-            let (a, b) = (ring * sides + k, ring * sides + (k + 1) % sides);
-            out.triangles.extend([[a, b, b + sides], [a, b + sides, a + sides]]);
+    for (k, sign) in [(0, -1.0), (last, 1.0)] {
+        out.positions.push(beads[k].center + ahead(k) * (sign * beads[k].radius));
+        out.normals.push(ahead(k) * sign);
+    }
+    let tip = beads.len() * SIDES;
+    for side in 0..SIDES {
+        let next = (side + 1) % SIDES;
+        for k in 0..last {
+            let (a, b) = (k * SIDES + side, k * SIDES + next);
+            out.triangles.extend([[a, b + SIDES, b], [a, a + SIDES, b + SIDES]]);
         }
+        out.triangles.extend([[tip, side, next], [tip + 1, last * SIDES + next, last * SIDES + side]]);
     }
     out.uvs = vec![wheel_uv(Paint::Ink, 1.0); out.positions.len()];
     out

@@ -14,7 +14,7 @@ use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use glam::{DVec3, dvec3};
 
 /// Edge of a grid cell, units.
-const CELL: f64 = 0.0315;
+const CELL: f64 = 0.0305;
 /// Lowest corner of the grid; `x` straddles the plane of symmetry.
 const LOW: DVec3 = dvec3(-0.5 * CELL, -0.07, -1.05);
 /// Highest corner.
@@ -41,14 +41,14 @@ impl Half {
         let (mut positions, quads) = nets(shape);
         let seam: Vec<bool> = positions.iter().map(|p| p.x < 0.5 * CELL).collect();
         let ring = neighbors(positions.len(), quads.iter().map(|q| &q[..]));
-        for _ in 0..ROUNDS {
-            positions = relax(shape, &positions, &seam, &ring);
-        }
         let mut normals = vec![DVec3::ZERO; positions.len()];
-        for (i, p) in positions.iter_mut().enumerate() {
-            for _ in 0..3 {
-                (*p, normals[i]) = on_seam(shape.project(*p), seam[i]);
-            }
+        settle(shape, &mut positions, &mut normals, &seam);
+        for _ in 0..ROUNDS {
+            positions = relax(&positions, &normals, &seam, &ring);
+            settle(shape, &mut positions, &mut normals, &seam);
+        }
+        for _ in 0..2 {
+            settle(shape, &mut positions, &mut normals, &seam);
         }
         let triangles = quads.iter().flat_map(|q| split(&positions, *q)).collect();
         Self { positions, normals, triangles, seam }
@@ -108,22 +108,26 @@ fn neighbors<'a>(count: usize, polygons: impl Iterator<Item = &'a [usize]>) -> V
     out
 }
 
-/// Moves each vertex towards the middle of its neighbors along the surface, and onto it.
-fn relax(shape: &Shape, positions: &[DVec3], seam: &[bool], ring: &[Vec<usize>]) -> Vec<DVec3> {
+/// Moves each vertex towards the middle of its neighbors along the surface.
+fn relax(positions: &[DVec3], normals: &[DVec3], seam: &[bool], ring: &[Vec<usize>]) -> Vec<DVec3> {
     let moved = |i: usize| {
         let p = positions[i];
         // The mirror images of neighbors cancel in x and count twice in y and z, save those on the plane.
         let weight = |j: usize| if seam[i] && !seam[j] { 2.0 } else { 1.0 };
         let total: f64 = ring[i].iter().map(|j| weight(*j)).sum();
         let sum = ring[i].iter().fold(DVec3::ZERO, |s, j| s + positions[*j] * weight(*j));
-        let middle = sum / total.max(1.0);
-        let normal = shape.sample(p).1.normalize_or(DVec3::Y);
-        let step = middle - p;
-        let along = step - normal * step.dot(normal);
-        let p = if seam[i] { (p + along * 0.6).with_x(0.0) } else { p + along * 0.6 };
-        on_seam(shape.project(p), seam[i]).0
+        let step = sum / total.max(1.0) - p;
+        p + (step - normals[i] * step.dot(normals[i])) * 0.6
     };
     (0..positions.len()).map(moved).collect()
+}
+
+/// Draws each vertex to the surface, seam vertices within the plane of symmetry.
+fn settle(shape: &Shape, positions: &mut [DVec3], normals: &mut [DVec3], seam: &[bool]) {
+    for ((p, normal), seam) in positions.iter_mut().zip(normals).zip(seam) {
+        let from = if *seam { p.with_x(0.0) } else { *p };
+        (*p, *normal) = on_seam(shape.project(from), *seam);
+    }
 }
 
 fn on_seam((p, normal): (DVec3, DVec3), seam: bool) -> (DVec3, DVec3) {

@@ -12,7 +12,24 @@ enum Form {
     /// Axis-aligned ellipsoid.
     Ellipsoid { center: DVec3, radii: DVec3 },
     /// Tube along a line, each point of which has a radius.
-    Tube(Vec<Knot>),
+    Tube(Vec<Cone>),
+}
+
+/// A piece of a tube: all balls between two, their radii changing evenly.
+#[derive(Clone, Debug)]
+struct Cone {
+    start: DVec3,
+    /// Unit vector from end to end.
+    axis: DVec3,
+    length: f64,
+    radii: [f64; 2],
+    /// Sine and cosine of the angle between the axis and the side.
+    slope: [f64; 2],
+    /// A ball around the piece.
+    middle: DVec3,
+    reach: f64,
+    /// Normal of the plane into which the piece is flattened, and how much more distances across it count.
+    flat: Option<(DVec3, f64)>,
 }
 
 /// A point of a tube's middle line, with the radius there.
@@ -26,8 +43,6 @@ pub(super) struct Part {
     pub(super) bone: Bone,
     /// Width of the blend with the parts before, units.
     blend: f64,
-    /// Normal of the plane into which the part is flattened, and the factor of thickness.
-    flat: Option<(DVec3, f64)>,
 }
 
 /// The body.
@@ -36,8 +51,14 @@ pub(super) struct Shape {
     /// Parts in the order of the union.
     parts: Vec<Part>,
     /// What is taken out of the left ear.
-    hollow: Vec<Knot>,
+    hollow: Form,
 }
+
+/// Farther than anything in the field.
+const FAR: f64 = 1e3;
+
+/// Width over which the rim of the ear's hollow is rounded.
+const RIM: f64 = 0.035;
 
 /// Middle line of the left ear from base to tip, with radii.
 pub(super) const EAR: [Knot; 7] = [
@@ -73,24 +94,26 @@ impl Shape {
         parts.extend(limbs());
         // The tail's second joint stands at the second point of its middle line.
         let tail = fine(&TAIL);
-        parts.push(tube(Bone::Tail1, tail[..=FINE].to_vec(), 0.05));
-        parts.push(tube(Bone::Tail2, tail[FINE..].to_vec(), 0.01));
+        parts.push(tube(Bone::Tail1, &tail[..=FINE], 0.05));
+        parts.push(tube(Bone::Tail2, &tail[FINE..], 0.01));
         let ear = fine(&EAR);
-        let hollow =
-            ear[FINE..=5 * FINE].iter().map(|(p, r)| (*p + facing() * (0.70 * r), 0.45 * r)).collect();
-        parts.push(Part { flat: Some((facing(), EAR_THICKNESS)), ..tube(Bone::Head, ear, 0.05) });
-        Self { parts, hollow }
+        let hollow: Vec<Knot> =
+            ear[FINE..=5 * FINE].iter().map(|(p, r)| (*p + facing() * (0.80 * r), 0.48 * r)).collect();
+        let form = Form::Tube(cones(&ear, Some((facing(), 1.0 / EAR_THICKNESS - 1.0))));
+        parts.push(Part { form, bone: Bone::Head, blend: 0.05 });
+        Self { parts, hollow: Form::Tube(cones(&hollow, None)) }
     }
 
     /// The field at `p`.
     pub(super) fn field(&self, p: DVec3) -> f64 {
         let p = dvec3(p.x.abs(), p.y, p.z);
-        let mut sum = f64::INFINITY;
+        let mut sum = FAR;
         for part in &self.parts {
-            sum = smooth_min(sum, part.distance(p), part.blend);
+            // What is farther than the blend is wide changes nothing.
+            sum = smooth_min(sum, part.form.distance(p, sum + part.blend), part.blend);
         }
         // A smooth maximum: the rim of the hollow is round.
-        -smooth_min(-sum, along(p, &self.hollow, None), 0.03)
+        -smooth_min(-sum, self.hollow.distance(p, RIM - sum), RIM)
     }
 
     /// The field and its gradient at `p`, by four samples at the corners of a tetrahedron.
@@ -132,9 +155,9 @@ impl Shape {
     /// Part nearest to `p`, a point with `x ≥ 0`.
     pub(super) fn nearest(&self, p: DVec3) -> &Part {
         let mut best = &self.parts[0];
-        let mut least = f64::INFINITY;
+        let mut least = FAR;
         for part in &self.parts {
-            let d = part.distance(p);
+            let d = part.form.distance(p, least);
             if d < least {
                 (best, least) = (part, d);
             }
@@ -143,41 +166,71 @@ impl Shape {
     }
 }
 
-impl Part {
-    fn distance(&self, p: DVec3) -> f64 {
-        match self.form {
-            Form::Ellipsoid { center, radii } => {
+impl Form {
+    /// Distance of `p`, where that is below `limit`; elsewhere `limit` or more.
+    fn distance(&self, p: DVec3, limit: f64) -> f64 {
+        match *self {
+            Self::Ellipsoid { center, radii } => {
                 let q = (p - center) / radii;
-                let (k0, k1) = (q.length(), (q / radii).length());
-                if k1 < 1e-9 { -radii.min_element() } else { k0 * (k0 - 1.0) / k1 }
+                let (square, least) = (q.length_squared(), radii.min_element());
+                // The quotient below is never less than `least · (k0 − 1)`.
+                let bound = 1.0 + limit / least;
+                if bound > 0.0 && square > bound * bound {
+                    return limit;
+                }
+                let (k0, k1) = (square.sqrt(), (q / radii).length());
+                if k1 < 1e-9 { -least } else { k0 * (k0 - 1.0) / k1 }
             }
-            Form::Tube(ref line) => along(p, line, self.flat),
+            Self::Tube(ref cones) => cones.iter().fold(limit, |least, cone| {
+                let bound = least + cone.reach;
+                let near = bound > 0.0 && (p - cone.middle).length_squared() < bound * bound;
+                if near { least.min(cone.distance(p)) } else { least }
+            }),
         }
     }
 }
 
-/// Distance of `p` from the tube along `line`, optionally flattened; far away a lower bound of it.
-fn along(p: DVec3, line: &[Knot], flat: Option<(DVec3, f64)>) -> f64 {
-    const FAR: f64 = 0.25;
-    // The tube is inside a ball around the middle of its ends.
-    let (first, last) = (line[0].0, line[line.len() - 1].0);
-    let middle = (first + last) * 0.5;
-    let bound = (p - middle).length() - 0.75 * (last - first).length() - 0.2;
-    if bound > FAR {
-        return bound;
-    }
-    let mut least = f64::INFINITY;
-    for pair in line.windows(2) {
-        let ((a, ra), (b, rb)) = (pair[0], pair[1]);
-        let (mut q, edge) = (p - a, b - a);
-        if let Some((normal, factor)) = flat {
-            // Distances across the plane count more.
-            let t = (q.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
-            q += normal * (normal.dot(q - edge * t) * (1.0 / factor - 1.0));
+impl Cone {
+    fn new((a, ra): Knot, (b, rb): Knot, flat: Option<(DVec3, f64)>) -> Self {
+        let length = (b - a).length();
+        let sine = (ra - rb) / length;
+        Self {
+            start: a,
+            axis: (b - a) / length,
+            length,
+            radii: [ra, rb],
+            slope: [sine, (1.0 - sine * sine).max(0.0).sqrt()],
+            middle: (a + b) * 0.5,
+            // Flattening shears a little where the line leaves the plane.
+            reach: 0.5 * length + ra.max(rb) + if flat.is_some() { 0.05 } else { 0.0 },
+            flat,
         }
-        least = least.min(tapered(q, edge, ra, rb));
     }
-    least
+
+    fn distance(&self, p: DVec3) -> f64 {
+        let mut q = p - self.start;
+        if let Some((normal, more)) = self.flat {
+            let foot = self.axis * q.dot(self.axis).clamp(0.0, self.length);
+            q += normal * (normal.dot(q - foot) * more);
+        }
+        let along = q.dot(self.axis);
+        let across = (q.length_squared() - along * along).max(0.0).sqrt();
+        let ([ra, rb], [sine, cosine]) = (self.radii, self.slope);
+        let p = DVec2::new(across, along);
+        let k = p.dot(DVec2::new(-sine, cosine));
+        if k < 0.0 {
+            p.length() - ra
+        } else if k > cosine * self.length {
+            (p - DVec2::new(0.0, self.length)).length() - rb
+        } else {
+            p.dot(DVec2::new(cosine, sine)) - ra
+        }
+    }
+}
+
+/// The pieces of a tube.
+fn cones(line: &[Knot], flat: Option<(DVec3, f64)>) -> Vec<Cone> {
+    line.windows(2).map(|pair| Cone::new(pair[0], pair[1], flat)).collect()
 }
 
 /// Direction in which the left ear's opening faces.
@@ -208,44 +261,23 @@ fn fine(line: &[Knot]) -> Vec<Knot> {
     out
 }
 
-/// Distance of `q` from a capsule from the origin to `edge` whose radius goes from `ra` to `rb`.
-fn tapered(q: DVec3, edge: DVec3, ra: f64, rb: f64) -> f64 {
-    let length = edge.length();
-    let along = q.dot(edge) / length;
-    let across = (q.length_squared() - along * along).max(0.0).sqrt();
-    let sine = (ra - rb) / length;
-    let cosine = (1.0 - sine * sine).max(0.0).sqrt();
-    let p = DVec2::new(across, along);
-    let k = p.dot(DVec2::new(-sine, cosine));
-    if k < 0.0 {
-        p.length() - ra
-    } else if k > cosine * length {
-        (p - DVec2::new(0.0, length)).length() - rb
-    } else {
-        p.dot(DVec2::new(cosine, sine)) - ra
-    }
-}
-
 /// The minimum with its corner rounded over a width of `k` (quadratic).
 fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
-    if !a.is_finite() {
-        return b;
-    }
     let h = (k - (a - b).abs()).max(0.0) / k;
     a.min(b) - h * h * k * 0.25
 }
 
 fn ellipsoid(bone: Bone, center: [f64; 3], radii: [f64; 3], blend: f64) -> Part {
     let form = Form::Ellipsoid { center: DVec3::from_array(center), radii: DVec3::from_array(radii) };
-    Part { form, bone, blend, flat: None }
+    Part { form, bone, blend }
 }
 
-fn tube(bone: Bone, line: Vec<Knot>, blend: f64) -> Part {
-    Part { form: Form::Tube(line), bone, blend, flat: None }
+fn tube(bone: Bone, line: &[Knot], blend: f64) -> Part {
+    Part { form: Form::Tube(cones(line, None)), bone, blend }
 }
 
 fn capsule(bone: Bone, a: DVec3, b: DVec3, ra: f64, rb: f64, blend: f64) -> Part {
-    tube(bone, vec![(a, ra), (b, rb)], blend)
+    tube(bone, &[(a, ra), (b, rb)], blend)
 }
 
 fn torso() -> Vec<Part> {
@@ -271,16 +303,17 @@ fn limbs() -> Vec<Part> {
     let at = dvec3;
     let mut parts = vec![
         // Arm: shoulder, elbow, wrist, paw.
-        capsule(Bone::UpperArm, at(0.190, 0.715, 0.010), at(0.360, 0.650, 0.030), 0.098, 0.082, 0.06),
-        capsule(Bone::Forearm, at(0.360, 0.650, 0.030), at(0.490, 0.560, 0.095), 0.082, 0.078, 0.04),
-        ellipsoid(Bone::Hand, [0.530, 0.525, 0.120], [0.092, 0.090, 0.090], 0.05),
+        capsule(Bone::Shoulder, at(0.130, 0.722, 0.005), at(0.215, 0.709, 0.012), 0.100, 0.097, 0.06),
+        capsule(Bone::UpperArm, at(0.215, 0.709, 0.012), at(0.375, 0.662, 0.030), 0.097, 0.082, 0.075),
+        capsule(Bone::Forearm, at(0.375, 0.662, 0.030), at(0.515, 0.585, 0.090), 0.082, 0.078, 0.05),
+        ellipsoid(Bone::Hand, [0.560, 0.553, 0.115], [0.092, 0.090, 0.090], 0.05),
         // Leg: thigh, shank, foot.
         ellipsoid(Bone::Thigh, [0.215, 0.245, 0.045], [0.150, 0.160, 0.175], 0.06),
         capsule(Bone::Shin, at(0.215, 0.190, 0.020), at(0.222, 0.090, 0.020), 0.108, 0.090, 0.05),
         ellipsoid(Bone::Foot, [0.232, 0.085, 0.105], [0.116, 0.076, 0.185], 0.04),
     ];
     for (x, z) in [(0.158, 0.240), (0.238, 0.264), (0.316, 0.234)] {
-        parts.push(ellipsoid(Bone::Toes, [x, 0.062, z], [0.047, 0.052, 0.062], 0.03));
+        parts.push(ellipsoid(Bone::Toes, [x, 0.062, z], [0.047, 0.052, 0.062], 0.04));
     }
     parts
 }

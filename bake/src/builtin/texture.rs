@@ -9,7 +9,7 @@ const REACH: f64 = 0.92;
 /// Up to this depth all directions have the body's colour.
 const BARE: f64 = 0.3;
 /// Samples along each edge of a pixel.
-const SUPERSAMPLES: usize = 4;
+const SUPERSAMPLES: usize = 2;
 
 /// A direction of the wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,11 +35,11 @@ const fn rgb(hex: u32) -> Color {
     [r as f64 / 255.0, g as f64 / 255.0, b as f64 / 255.0]
 }
 
-const BODY: Color = rgb(0x3F_B5AC);
+const BODY: Color = rgb(0x8E_70C4);
 const CREAM: Color = rgb(0xFF_F0D8);
-const CORAL: Color = rgb(0xFF_9A86);
-const DEEP: Color = rgb(0x1F_7F86);
-const BLUSH: Color = rgb(0xF7_8D84);
+const CORAL: Color = rgb(0xFF_A6B0);
+const DEEP: Color = rgb(0x60_4696);
+const BLUSH: Color = rgb(0xF4_88A8);
 const INK: Color = rgb(0x2A_2140);
 
 /// Direction of a paint on the wheel.
@@ -63,9 +63,12 @@ pub(super) fn eye_uv(x: f64, y: f64) -> [f64; 2] {
 /// The texture as PNG.
 pub(super) fn png() -> Vec<u8> {
     let mut pixels = Vec::with_capacity(2 * SIZE * SIZE * 3);
+    let directions = WHEEL.map(|paint| (paint, direction(paint)));
+    let wheel = |x: f64, y: f64| wheel_color(&directions, x, y);
     for row in 0..SIZE {
         for column in 0..2 * SIZE {
-            pixels.extend(pixel(column, row).map(byte));
+            let color = if column < SIZE { pixel(column, row, wheel) } else { pixel(column, row, eye_color) };
+            pixels.extend(color.map(byte));
         }
     }
     let mut out = Vec::new();
@@ -82,8 +85,7 @@ pub(super) fn png() -> Vec<u8> {
 }
 
 /// Average colour of a pixel.
-fn pixel(column: usize, row: usize) -> Color {
-    let half = if column < SIZE { wheel_color } else { eye_color };
+fn pixel(column: usize, row: usize, half: impl Fn(f64, f64) -> Color) -> Color {
     let mut sum = [0.0; 3];
     for sample in 0..SUPERSAMPLES * SUPERSAMPLES {
         let at = |pixel: usize, k: usize| {
@@ -99,14 +101,10 @@ fn pixel(column: usize, row: usize) -> Color {
 }
 
 /// The wheel at a point of the unit disc; a sector has the colours of its middle line.
-fn wheel_color(x: f64, y: f64) -> Color {
-    let depth_along = |p: Paint| {
-        let [dx, dy] = direction(p);
-        x * dx + y * dy
-    };
-    let nearest = |a: Paint, b: Paint| if depth_along(b) > depth_along(a) { b } else { a };
-    let paint = WHEEL.into_iter().fold(Paint::Belly, nearest);
-    let depth = depth_along(paint).clamp(0.0, 1.0);
+fn wheel_color(directions: &[(Paint, [f64; 2]); WHEEL.len()], x: f64, y: f64) -> Color {
+    let along = directions.map(|(paint, [dx, dy])| (paint, x * dx + y * dy));
+    let (paint, depth) = along.into_iter().fold(along[0], |a, b| if b.1 > a.1 { b } else { a });
+    let depth = depth.clamp(0.0, 1.0);
     let edge = |width: f64| smooth((depth - 0.5) / width + 0.5);
     let soft = smooth((depth - BARE) / (1.0 - BARE));
     match paint {
@@ -129,7 +127,7 @@ fn eye_color(x: f64, y: f64) -> Color {
         smooth((1.0 - (dx * dx + dy * dy).sqrt()) * 8.0 + 0.5)
     };
     let glow = smooth((-y - 0.05) * 0.9) * disc(0.0, 0.0, 0.86, 0.86);
-    let iris = mix(INK, rgb(0x8A_5FC0), glow);
+    let iris = mix(INK, rgb(0x3F_B5AC), glow);
     let pupil = mix(iris, rgb(0x19_1226), disc(0.0, 0.02, 0.52, 0.56));
     let light = mix(pupil, [1.0; 3], disc(-0.26, 0.40, 0.27, 0.25));
     mix(light, [1.0; 3], 0.9 * disc(0.30, -0.38, 0.13, 0.12))

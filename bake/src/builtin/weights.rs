@@ -10,7 +10,7 @@ use super::skeleton::{Bone, JOINTS, Side, index, mirrored};
 type Row = [f64; JOINTS];
 
 /// Rounds of diffusion: the blend between two joints is about √rounds · 0.7 edges wide to either side.
-const ROUNDS: usize = 26;
+const ROUNDS: usize = 24;
 /// Further rounds within the torso, where bends are spread wide.
 const TORSO_ROUNDS: usize = 50;
 /// Influences a vertex.
@@ -77,17 +77,23 @@ pub(super) fn weights(shape: &Shape, half: &Half) -> Vec<Influences> {
             symmetrize(row);
         }
     }
-    for round in 0..ROUNDS + TORSO_ROUNDS {
-        let moves = |i: usize| round >= TORSO_ROUNDS || torso[i];
-        rows = (0..rows.len())
-            .map(|i| if moves(i) { spread(&rows, i, &ring[i], &half.seam) } else { rows[i] })
-            .collect();
+    // The limbs' heat stays outside meanwhile.
+    let within = |i: usize| {
+        if torso[i] { ring[i].iter().copied().filter(|j| torso[*j]).collect() } else { Vec::new() }
+    };
+    let inner: Vec<Vec<usize>> = (0..ring.len()).map(within).collect();
+    for round in 0..TORSO_ROUNDS + ROUNDS {
+        let ring = if round < TORSO_ROUNDS { &inner } else { &ring };
+        rows = (0..rows.len()).map(|i| spread(&rows, i, &ring[i], &half.seam)).collect();
     }
     rows.iter().zip(&half.seam).map(|(row, seam)| Influences::of(row, *seam)).collect()
 }
 
 /// A step of diffusion at vertex `i`; beyond the plane of symmetry are the mirror images.
 fn spread(rows: &[Row], i: usize, ring: &[usize], seam: &[bool]) -> Row {
+    if ring.is_empty() {
+        return rows[i];
+    }
     let mut sum = [0.0; JOINTS];
     let mut total = 0.0;
     for &j in ring {

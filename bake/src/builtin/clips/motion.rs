@@ -121,7 +121,7 @@ pub(super) fn jump(t: f64) -> Pose {
         t,
     );
     // Squeezed by both impacts.
-    pose.open = 1.0 - 0.55 * down - 0.85 * bump(1.07, 0.14, t);
+    pose.open = 1.0 - 0.40 * down - 0.85 * bump(1.07, 0.14, t);
     let foot = leap(t, UP - 0.02, DOWN + 0.005);
     pose.feet = [foot; 2];
     let lean = 0.42 * down - 0.16 * air + 0.38 * land;
@@ -144,9 +144,9 @@ pub(super) fn jump(t: f64) -> Pose {
             (0.0, 0.0),
             (0.28, -0.28),
             (0.36, -0.20),
-            (0.52, 0.95),
-            (0.72, 1.05),
-            (0.95, 0.60),
+            (0.52, 0.80),
+            (0.72, 0.88),
+            (0.95, 0.52),
             (1.12, -0.24),
             (1.3, 0.06),
         ],

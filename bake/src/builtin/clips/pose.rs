@@ -1,5 +1,6 @@
 //! A pose as an animator thinks of it, and its joints: turns, planted feet, squash, eyelids.
 
+use super::curve::ramp;
 use crate::builtin::skeleton::{Bone, JOINTS, Side, index, nodes, position};
 use glam::{DQuat, DVec3, dvec3};
 
@@ -78,7 +79,9 @@ impl Pose {
         }
         out[index(Bone::Hips, Side::Left)].translation += self.hips;
         for (side, step) in Side::BOTH.into_iter().zip(self.feet) {
-            out[index(Bone::Eye, side)].scale.y = self.open;
+            // A closed eye sinks into the head and leaves the line of its lid.
+            let sunk = 0.1 + 0.9 * ramp(0.08, 0.35, self.open);
+            out[index(Bone::Eye, side)].scale = dvec3(sunk, self.open, sunk);
             self.plant(side, step, &mut out);
         }
         out
