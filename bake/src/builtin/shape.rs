@@ -303,10 +303,10 @@ fn limbs() -> Vec<Part> {
     let at = dvec3;
     let mut parts = vec![
         // Arm: shoulder, elbow, wrist, paw.
-        capsule(Bone::Shoulder, at(0.130, 0.722, 0.005), at(0.215, 0.709, 0.012), 0.100, 0.097, 0.06),
-        capsule(Bone::UpperArm, at(0.215, 0.709, 0.012), at(0.375, 0.662, 0.030), 0.097, 0.082, 0.075),
-        capsule(Bone::Forearm, at(0.375, 0.662, 0.030), at(0.515, 0.585, 0.090), 0.082, 0.078, 0.05),
-        ellipsoid(Bone::Hand, [0.560, 0.553, 0.115], [0.092, 0.090, 0.090], 0.05),
+        capsule(Bone::Shoulder, at(0.130, 0.700, 0.005), at(0.215, 0.688, 0.012), 0.098, 0.095, 0.06),
+        capsule(Bone::UpperArm, at(0.215, 0.688, 0.012), at(0.375, 0.640, 0.030), 0.095, 0.081, 0.06),
+        capsule(Bone::Forearm, at(0.375, 0.640, 0.030), at(0.515, 0.563, 0.090), 0.081, 0.078, 0.05),
+        ellipsoid(Bone::Hand, [0.560, 0.531, 0.115], [0.092, 0.090, 0.090], 0.05),
         // Leg: thigh, shank, foot.
         ellipsoid(Bone::Thigh, [0.215, 0.245, 0.045], [0.150, 0.160, 0.175], 0.06),
         capsule(Bone::Shin, at(0.215, 0.190, 0.020), at(0.222, 0.090, 0.020), 0.108, 0.090, 0.05),

@@ -45,10 +45,10 @@ const MIDDLE: [(Bone, Bone, &str, DVec3); 8] = [
 /// Joints of the left side.
 const SIDE: [(Bone, Bone, &str, DVec3); 9] = [
     (Eye, Head, "eye", dvec3(0.152, 1.035, 0.265)),
-    (Shoulder, Chest, "shoulder", dvec3(0.070, 0.725, -0.010)),
-    (UpperArm, Shoulder, "upper_arm", dvec3(0.200, 0.712, 0.010)),
-    (Forearm, UpperArm, "forearm", dvec3(0.375, 0.662, 0.030)),
-    (Hand, Forearm, "hand", dvec3(0.512, 0.587, 0.088)),
+    (Shoulder, Chest, "shoulder", dvec3(0.070, 0.705, -0.010)),
+    (UpperArm, Shoulder, "upper_arm", dvec3(0.205, 0.690, 0.010)),
+    (Forearm, UpperArm, "forearm", dvec3(0.375, 0.640, 0.030)),
+    (Hand, Forearm, "hand", dvec3(0.512, 0.565, 0.088)),
     (Thigh, Hips, "thigh", dvec3(0.200, 0.300, 0.005)),
     (Shin, Thigh, "shin", dvec3(0.218, 0.185, 0.040)),
     (Foot, Shin, "foot", dvec3(0.222, 0.075, 0.015)),

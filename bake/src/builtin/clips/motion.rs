@@ -6,7 +6,7 @@ use crate::builtin::skeleton::{Bone, Side};
 use glam::{DVec3, dvec3};
 
 /// How far relaxed arms hang below the rest pose.
-const RELAXED: f64 = -0.22;
+const RELAXED: f64 = -0.16;
 
 /// Breathing, looking about, blinking; 4 s.
 pub(super) fn idle(t: f64) -> Pose {
@@ -57,8 +57,8 @@ pub(super) fn walk(t: f64) -> Pose {
         let forwards = -side.sign() * cowave(t - 0.03);
         let later = -side.sign() * cowave(t - 0.12);
         pose.turn_side(Bone::Shoulder, side, [0.0, -0.10 * forwards, 0.0]);
-        pose.turn_side(Bone::UpperArm, side, [-0.50 * forwards, -0.12 * forwards, RELAXED - 0.08]);
-        pose.turn_side(Bone::Forearm, side, [-0.22 - 0.22 * later, -0.25 - 0.15 * later, 0.0]);
+        pose.turn_side(Bone::UpperArm, side, [-0.50 * forwards, -0.06 * forwards, RELAXED - 0.04]);
+        pose.turn_side(Bone::Forearm, side, [-0.22 - 0.22 * later, -0.16 - 0.08 * later, 0.0]);
         pose.turn_side(Bone::Hand, side, [-0.12 * later, 0.0, -0.10]);
     }
     pose
@@ -121,7 +121,7 @@ pub(super) fn jump(t: f64) -> Pose {
         t,
     );
     // Squeezed by both impacts.
-    pose.open = 1.0 - 0.40 * down - 0.85 * bump(1.07, 0.14, t);
+    pose.open = 1.0 - 0.40 * down - 0.93 * bump(1.07, 0.16, t);
     let foot = leap(t, UP - 0.02, DOWN + 0.005);
     pose.feet = [foot; 2];
     let lean = 0.42 * down - 0.16 * air + 0.38 * land;
