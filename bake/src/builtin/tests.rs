@@ -136,11 +136,7 @@ fn weights_are_whole_and_smooth() {
     };
     for (a, b) in edges(&body.indices).keys() {
         let step: f32 = full(*a).iter().zip(full(*b)).map(|(x, y)| (x - y).abs()).sum();
-        assert!(
-            step < 0.5,
-            "weights jump by {step} along edge {a} {b} at {:?}",
-            body.positions[*a as usize]
-        );
+        assert!(step < 0.5, "weights jump by {step} along edge {a} {b} at {:?}", body.positions[*a as usize]);
     }
 }
 

@@ -38,22 +38,23 @@ impl Influences {
         Self { joints, weights: self.weights }
     }
 
-    /// The [`STRIDE`] largest of a row, less the next, so that a joint fades before another takes its place.
-    ///
-    /// A pair of equal weights on the plane of symmetry is so kept or dropped as a whole.
-    fn of(row: &Row) -> Self {
+    /// The [`STRIDE`] largest of a row.
+    fn of(row: &Row, seam: bool) -> Self {
         let mut order: Vec<usize> = (0..JOINTS).collect();
+        // A pair of equal weights on the plane of symmetry is kept or dropped as a whole.
         order.sort_by(|a, b| row[*b].total_cmp(&row[*a]).then(a.cmp(b)));
-        let cut = row[order[STRIDE]];
-        let share = |j: usize| row[j] - cut;
         order.truncate(STRIDE);
-        order.retain(|j| share(*j) > 0.005);
-        let sum: f64 = order.iter().map(|j| share(*j)).sum();
+        if seam {
+            let kept = order.clone();
+            order.retain(|j| kept.contains(&mirrored(*j)));
+        }
+        order.retain(|j| row[*j] > 0.01);
+        let sum: f64 = order.iter().map(|j| row[*j]).sum();
         let mut out = Self::only(0);
         for k in 0..STRIDE {
             let joint = order.get(k);
             out.joints[k] = joint.copied().unwrap_or(0);
-            out.weights[k] = joint.map_or(0.0, |j| share(*j) / sum);
+            out.weights[k] = joint.map_or(0.0, |j| row[*j] / sum);
         }
         out
     }
@@ -66,7 +67,7 @@ pub(super) fn weights(shape: &Shape, half: &Half) -> Vec<Influences> {
     let mut torso = Vec::with_capacity(ring.len());
     for p in &half.positions {
         let bone = shape.nearest(*p).bone;
-        torso.push(matches!(bone, Bone::Hips | Bone::Spine | Bone::Chest | Bone::Neck));
+        torso.push(matches!(bone, Bone::Hips | Bone::Spine | Bone::Chest | Bone::Neck | Bone::Shoulder));
         let mut row = [0.0; JOINTS];
         row[index(bone, Side::Left)] = 1.0;
         rows.push(row);
@@ -85,7 +86,7 @@ pub(super) fn weights(shape: &Shape, half: &Half) -> Vec<Influences> {
         let ring = if round < TORSO_ROUNDS { &inner } else { &ring };
         rows = (0..rows.len()).map(|i| spread(&rows, i, &ring[i], &half.seam)).collect();
     }
-    rows.iter().map(Influences::of).collect()
+    rows.iter().zip(&half.seam).map(|(row, seam)| Influences::of(row, *seam)).collect()
 }
 
 /// A step of diffusion at vertex `i`; beyond the plane of symmetry are the mirror images.
