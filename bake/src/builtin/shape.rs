@@ -12,7 +12,14 @@ enum Form {
     /// Axis-aligned ellipsoid.
     Ellipsoid { center: DVec3, radii: DVec3 },
     /// Tube along a line, each point of which has a radius.
-    Tube(Vec<Cone>),
+    Tube { cones: Vec<Cone>, ball: Ball },
+}
+
+/// A ball around something, to tell quickly that it is far.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    middle: DVec3,
+    radius: f64,
 }
 
 /// A piece of a tube: all balls between two, their radii changing evenly.
@@ -25,9 +32,7 @@ struct Cone {
     radii: [f64; 2],
     /// Sine and cosine of the angle between the axis and the side.
     slope: [f64; 2],
-    /// A ball around the piece.
-    middle: DVec3,
-    reach: f64,
+    ball: Ball,
     /// Normal of the plane into which the piece is flattened, and how much more distances across it count.
     flat: Option<(DVec3, f64)>,
 }
@@ -99,9 +104,9 @@ impl Shape {
         let ear = fine(&EAR);
         let hollow: Vec<Knot> =
             ear[FINE..=5 * FINE].iter().map(|(p, r)| (*p + facing() * (0.80 * r), 0.48 * r)).collect();
-        let form = Form::Tube(cones(&ear, Some((facing(), 1.0 / EAR_THICKNESS - 1.0))));
+        let form = along(&ear, Some((facing(), 1.0 / EAR_THICKNESS - 1.0)));
         parts.push(Part { form, bone: Bone::Head, blend: 0.05 });
-        Self { parts, hollow: Form::Tube(cones(&hollow, None)) }
+        Self { parts, hollow: along(&hollow, None) }
     }
 
     /// The field at `p`.
@@ -181,12 +186,21 @@ impl Form {
                 let (k0, k1) = (square.sqrt(), (q / radii).length());
                 if k1 < 1e-9 { -least } else { k0 * (k0 - 1.0) / k1 }
             }
-            Self::Tube(ref cones) => cones.iter().fold(limit, |least, cone| {
-                let bound = least + cone.reach;
-                let near = bound > 0.0 && (p - cone.middle).length_squared() < bound * bound;
-                if near { least.min(cone.distance(p)) } else { least }
-            }),
+            Self::Tube { ref cones, ball } if ball.nearer(p, limit) => {
+                cones.iter().fold(limit, |least, cone| {
+                    if cone.ball.nearer(p, least) { least.min(cone.distance(p)) } else { least }
+                })
+            }
+            Self::Tube { .. } => limit,
         }
+    }
+}
+
+impl Ball {
+    /// Whether `p` is less than `limit` from the ball, or deeper in it.
+    fn nearer(self, p: DVec3, limit: f64) -> bool {
+        let bound = limit + self.radius;
+        bound > 0.0 && (p - self.middle).length_squared() < bound * bound
     }
 }
 
@@ -200,9 +214,11 @@ impl Cone {
             length,
             radii: [ra, rb],
             slope: [sine, (1.0 - sine * sine).max(0.0).sqrt()],
-            middle: (a + b) * 0.5,
             // Flattening shears a little where the line leaves the plane.
-            reach: 0.5 * length + ra.max(rb) + if flat.is_some() { 0.05 } else { 0.0 },
+            ball: Ball {
+                middle: (a + b) * 0.5,
+                radius: 0.5 * length + ra.max(rb) + if flat.is_some() { 0.05 } else { 0.0 },
+            },
             flat,
         }
     }
@@ -228,9 +244,13 @@ impl Cone {
     }
 }
 
-/// The pieces of a tube.
-fn cones(line: &[Knot], flat: Option<(DVec3, f64)>) -> Vec<Cone> {
-    line.windows(2).map(|pair| Cone::new(pair[0], pair[1], flat)).collect()
+/// A tube along a line, optionally flattened.
+fn along(line: &[Knot], flat: Option<(DVec3, f64)>) -> Form {
+    let cones: Vec<Cone> = line.windows(2).map(|pair| Cone::new(pair[0], pair[1], flat)).collect();
+    let middle = (line[0].0 + line[line.len() - 1].0) * 0.5;
+    let far = |cone: &Cone| (cone.ball.middle - middle).length() + cone.ball.radius;
+    let radius = cones.iter().map(far).fold(0.0, f64::max);
+    Form::Tube { cones, ball: Ball { middle, radius } }
 }
 
 /// Direction in which the left ear's opening faces.
@@ -273,7 +293,7 @@ fn ellipsoid(bone: Bone, center: [f64; 3], radii: [f64; 3], blend: f64) -> Part 
 }
 
 fn tube(bone: Bone, line: &[Knot], blend: f64) -> Part {
-    Part { form: Form::Tube(cones(line, None)), bone, blend }
+    Part { form: along(line, None), bone, blend }
 }
 
 fn capsule(bone: Bone, a: DVec3, b: DVec3, ra: f64, rb: f64, blend: f64) -> Part {
