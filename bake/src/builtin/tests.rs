@@ -189,6 +189,54 @@ fn clips_loop_with_their_slopes() {
     }
 }
 
+/// Where a joint is at each key of a clip: time and position.
+fn path(clip: &str, joint: &str) -> Vec<(f64, DVec3)> {
+    let nodes = &plum().nodes;
+    let clip = plum().clips.iter().find(|c| c.name == clip).unwrap();
+    let at_key = |k: usize| {
+        let mut p = DVec3::ZERO;
+        let mut next = nodes.iter().position(|n| n.name == joint);
+        while let Some(n) = next {
+            let (mut moved, mut turned) = (nodes[n].translation, nodes[n].rotation);
+            for c in clip.channels.iter().filter(|c| c.node == n) {
+                let width = c.values.len() / c.times.len() / 3;
+                let v: Vec<f64> =
+                    c.values[(3 * k + 1) * width..][..width].iter().map(|x| f64::from(*x)).collect();
+                match c.property {
+                    Property::Translation => moved = DVec3::from_slice(&v),
+                    Property::Rotation => turned = DQuat::from_slice(&v),
+                    Property::Scale => {}
+                }
+            }
+            p = moved + turned * p;
+            next = nodes[n].parent;
+        }
+        p
+    };
+    let times = &clip.channels[0].times;
+    times.iter().enumerate().map(|(k, t)| (f64::from(*t), at_key(k))).collect()
+}
+
+#[test]
+fn feet_do_not_slide() {
+    for foot in ["foot_l", "foot_r"] {
+        let rest = path("idle", foot)[0].1;
+        for clip in ["idle", "shake", "jump"] {
+            // The jump's heels rise at 0.34 s and are back at 1.0 s.
+            let down = |t: f64| clip != "jump" || !(0.32..1.02).contains(&t);
+            for (t, p) in path(clip, foot).into_iter().filter(|(t, _)| down(*t)) {
+                assert!(p.distance(rest) < 2e-3, "{clip}: {foot} slides by {} at {t} s", p - rest);
+            }
+        }
+    }
+    // On a ground that moves backwards evenly, a foot that is down moves with it.
+    let stand: Vec<_> = path("walk", "foot_l").into_iter().filter(|(t, _)| (0.05..0.5).contains(t)).collect();
+    for pair in stand.windows(2) {
+        let speed = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+        assert!((speed.z + 0.35).abs() < 0.02 && speed.x.abs() < 0.02, "{speed} at {} s", pair[0].0);
+    }
+}
+
 #[test]
 fn the_jump_leaves_the_ground() {
     let jump = plum().clips.iter().find(|c| c.name == "jump").unwrap();

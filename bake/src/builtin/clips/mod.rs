@@ -13,6 +13,9 @@ use crate::pack::narrow;
 use glam::DQuat;
 use pose::{Local, Pose};
 
+/// Picks a property of a joint, padded to four numbers.
+type Pick = fn(&Local) -> [f64; 4];
+
 /// Keys a second.
 const RATE: f64 = 24.0;
 /// Half of the time over which slopes are measured, s.
@@ -24,7 +27,7 @@ const STILL: f64 = 1e-9;
 pub(super) fn clips() -> Vec<Clip> {
     vec![
         clip("walk", 1.0, motion::walk),
-        clip("jump", 1.5, motion::jump),
+        clip("jump", motion::LEAP, motion::jump),
         clip("shake", 2.0, motion::shake),
         clip("idle", 4.0, motion::idle),
     ]
@@ -43,7 +46,7 @@ fn clip(name: &str, duration: f64, motion: fn(f64) -> Pose) -> Clip {
     let rest = nodes();
     let mut channels = Vec::new();
     for node in 0..JOINTS {
-        let of_node = |pick: fn(&Local) -> [f64; 4]| -> Vec<[[f64; 4]; 3]> {
+        let of_node = |pick: Pick| -> Vec<[[f64; 4]; 3]> {
             samples.iter().map(|s| [0, 1, 2].map(|m| pick(&s[m][node]))).collect()
         };
         let still = [
@@ -51,7 +54,7 @@ fn clip(name: &str, duration: f64, motion: fn(f64) -> Pose) -> Clip {
             DQuat::IDENTITY.to_array(),
             rest[node].scale.extend(0.0).to_array(),
         ];
-        let properties: [(Property, fn(&Local) -> [f64; 4]); 3] = [
+        let properties: [(Property, Pick); 3] = [
             (Property::Translation, |l| l.translation.extend(0.0).to_array()),
             (Property::Rotation, |l| l.rotation.to_array()),
             (Property::Scale, |l| l.scale.extend(0.0).to_array()),

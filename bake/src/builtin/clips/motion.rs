@@ -84,7 +84,11 @@ fn stride(phase: f64) -> Step {
     Step { offset: dvec3(0.0, planted + lift, z), pitch, toes }
 }
 
-/// A leap with run-up in the knees; 1.5 s. In the air from 0.46 s to 0.96 s, as gravity has it.
+/// Length of the leap, s.
+pub(super) const LEAP: f64 = 1.75;
+
+/// A leap with run-up in the knees, then a rest in which the flesh settles. In the air from 0.46 s to
+/// 0.96 s, as gravity has it.
 pub(super) fn jump(t: f64) -> Pose {
     const UP: f64 = 0.46;
     const DOWN: f64 = 0.96;
@@ -100,7 +104,11 @@ pub(super) fn jump(t: f64) -> Pose {
     } else if t < 1.09 {
         hermite(((DOWN, 0.045), -speed), ((1.09, -0.115), 0.0), t)
     } else {
-        through(&[(0.0, -0.115), (0.19, 0.012), (0.32, -0.006), (0.41, 0.0), (0.6, 0.0)], 0.8, t - 1.09)
+        through(
+            &[(0.0, -0.115), (0.19, -0.006), (0.32, -0.009), (0.45, 0.0), (0.6, 0.0), (0.75, 0.0), (0.9, 0.0)],
+            2.0,
+            t - 1.09,
+        )
     };
     pose.hips = dvec3(0.0, height, 0.0);
     let down = ramp(0.0, 0.26, t) * (1.0 - ramp(0.34, 0.46, t));
@@ -117,11 +125,11 @@ pub(super) fn jump(t: f64) -> Pose {
             (1.27, 1.04),
             (1.40, 1.0),
         ],
-        1.5,
+        LEAP,
         t,
     );
     // Squeezed by both impacts.
-    pose.open = 1.0 - 0.40 * down - 0.93 * bump(1.07, 0.16, t);
+    pose.open = 1.0 - 0.40 * down - 0.93 * ramp(0.93, 1.0, t) * (1.0 - ramp(1.16, 1.26, t));
     let foot = leap(t, UP - 0.02, DOWN + 0.005);
     pose.feet = [foot; 2];
     let lean = 0.42 * down - 0.16 * air + 0.38 * land;
@@ -129,14 +137,26 @@ pub(super) fn jump(t: f64) -> Pose {
     pose.turn(Bone::Spine, [0.35 * lean, 0.0, 0.0]);
     pose.turn(Bone::Chest, [0.35 * lean, 0.0, 0.0]);
     let nod = through(
-        &[(0.0, 0.0), (0.30, -0.16), (0.46, -0.26), (0.70, 0.06), (0.94, 0.14), (1.12, 0.02), (1.3, -0.07)],
-        1.5,
+        &[
+            (0.0, 0.0),
+            (0.30, -0.16),
+            (0.46, -0.26),
+            (0.70, 0.06),
+            (0.94, 0.14),
+            (1.12, 0.02),
+            (1.3, -0.07),
+            (1.5, 0.0),
+        ],
+        LEAP,
         t,
     );
     pose.turn(Bone::Neck, [-0.3 * lean, 0.0, 0.0]);
     pose.turn(Bone::Head, [-0.35 * lean + nod, 0.0, 0.0]);
-    let wag =
-        through(&[(0.0, 0.0), (0.30, 0.24), (0.52, -0.40), (0.75, 0.05), (1.0, 0.38), (1.2, -0.16)], 1.5, t);
+    let wag = through(
+        &[(0.0, 0.0), (0.30, 0.24), (0.52, -0.40), (0.75, 0.05), (1.0, 0.38), (1.2, -0.16), (1.45, 0.03)],
+        LEAP,
+        t,
+    );
     pose.turn(Bone::Tail1, [wag, 0.0, 0.0]);
     pose.turn(Bone::Tail2, [0.8 * wag, 0.0, 0.0]);
     let raise = through(
@@ -149,8 +169,9 @@ pub(super) fn jump(t: f64) -> Pose {
             (0.95, 0.52),
             (1.12, -0.24),
             (1.3, 0.06),
+            (1.5, 0.0),
         ],
-        1.5,
+        LEAP,
         t,
     );
     pose.turn_both(Bone::UpperArm, [0.75 * down - 0.30 * air, 0.0, RELAXED + raise]);
@@ -163,9 +184,10 @@ fn leap(t: f64, up: f64, down: f64) -> Step {
     let s = ((t - up) / (down - up)).clamp(0.0, 1.0);
     let pitch = through(
         &[(0.0, 0.0), (0.34, 0.0), (0.47, 0.55), (0.70, 0.15), (0.93, -0.16), (1.0, 0.0), (1.2, 0.0)],
-        1.5,
+        LEAP,
         t,
     );
+    let pitch = pitch * ramp(0.31, 0.40, t) * (1.0 - ramp(0.95, 1.02, t));
     let planted = if pitch > 0.0 { 0.150 * libm::sin(pitch) } else { -0.055 * libm::sin(pitch) };
     let rise = 1.42 * s * (1.0 - s);
     let spread = 0.02 * ramp(0.0, 0.5, s) * (1.0 - ramp(0.5, 1.0, s));
