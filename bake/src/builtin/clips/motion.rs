@@ -87,15 +87,81 @@ fn stride(phase: f64) -> Step {
 /// Length of the leap, s.
 pub(super) const LEAP: f64 = 1.75;
 
+/// When the feet leave the ground and when they are back, s.
+const UP: f64 = 0.46;
+const DOWN: f64 = 0.96;
+/// How long the back is during the leap.
+const STRETCH: [(f64, f64); 8] = [
+    (0.0, 1.0),
+    (0.28, 0.90),
+    (0.44, 1.10),
+    (0.70, 1.0),
+    (0.93, 1.06),
+    (1.08, 0.86),
+    (1.27, 1.04),
+    (1.40, 1.0),
+];
+/// Turn of the head.
+const NOD: [(f64, f64); 8] = [
+    (0.0, 0.0),
+    (0.30, -0.16),
+    (0.46, -0.26),
+    (0.70, 0.06),
+    (0.94, 0.14),
+    (1.12, 0.02),
+    (1.3, -0.07),
+    (1.5, 0.0),
+];
+/// Turn of the tail.
+const WAG: [(f64, f64); 7] =
+    [(0.0, 0.0), (0.30, 0.24), (0.52, -0.40), (0.75, 0.05), (1.0, 0.38), (1.2, -0.16), (1.45, 0.03)];
+/// How far the arms are raised.
+const RAISE: [(f64, f64); 9] = [
+    (0.0, 0.0),
+    (0.28, -0.28),
+    (0.36, -0.20),
+    (0.52, 0.80),
+    (0.72, 0.88),
+    (0.95, 0.52),
+    (1.12, -0.24),
+    (1.3, 0.06),
+    (1.5, 0.0),
+];
+
 /// A leap with run-up in the knees, then a rest in which the flesh settles. In the air from 0.46 s to
 /// 0.96 s, as gravity has it.
 pub(super) fn jump(t: f64) -> Pose {
-    const UP: f64 = 0.46;
-    const DOWN: f64 = 0.96;
-    const GRAVITY: f64 = 9.81;
     let mut pose = Pose::rest();
+    pose.hips = dvec3(0.0, height(t), 0.0);
+    let down = ramp(0.0, 0.26, t) * (1.0 - ramp(0.34, 0.46, t));
+    let air = ramp(0.38, 0.48, t) * (1.0 - ramp(0.86, 1.0, t));
+    let land = ramp(0.97, 1.09, t) * (1.0 - ramp(1.12, 1.36, t));
+    pose.stretch = through(&STRETCH, LEAP, t);
+    // Squeezed by both impacts.
+    pose.open = 1.0 - 0.40 * down - 0.93 * ramp(0.93, 1.0, t) * (1.0 - ramp(1.16, 1.26, t));
+    let foot = leap(t, UP - 0.02, DOWN + 0.005);
+    pose.feet = [foot; 2];
+    let lean = 0.42 * down - 0.16 * air + 0.38 * land;
+    pose.turn(Bone::Hips, [0.30 * lean, 0.0, 0.0]);
+    pose.turn(Bone::Spine, [0.35 * lean, 0.0, 0.0]);
+    pose.turn(Bone::Chest, [0.35 * lean, 0.0, 0.0]);
+    let nod = through(&NOD, LEAP, t);
+    pose.turn(Bone::Neck, [-0.3 * lean, 0.0, 0.0]);
+    pose.turn(Bone::Head, [-0.35 * lean + nod, 0.0, 0.0]);
+    let wag = through(&WAG, LEAP, t);
+    pose.turn(Bone::Tail1, [wag, 0.0, 0.0]);
+    pose.turn(Bone::Tail2, [0.8 * wag, 0.0, 0.0]);
+    let raise = through(&RAISE, LEAP, t);
+    pose.turn_both(Bone::UpperArm, [0.75 * down - 0.30 * air, 0.0, RELAXED + raise]);
+    pose.turn_both(Bone::Forearm, [-0.10, -0.15 - 0.2 * land, 0.35 * raise]);
+    pose
+}
+
+/// Height of the hips during the leap.
+fn height(t: f64) -> f64 {
+    const GRAVITY: f64 = 9.81;
     let speed = 0.5 * GRAVITY * (DOWN - UP);
-    let height = if t < 0.32 {
+    if t < 0.32 {
         hermite(((0.0, 0.0), 0.0), ((0.32, -0.105), 0.0), t)
     } else if t < UP {
         hermite(((0.32, -0.105), 0.0), ((UP, 0.045), speed), t)
@@ -105,78 +171,19 @@ pub(super) fn jump(t: f64) -> Pose {
         hermite(((DOWN, 0.045), -speed), ((1.09, -0.115), 0.0), t)
     } else {
         through(
-            &[(0.0, -0.115), (0.19, -0.006), (0.32, -0.009), (0.45, 0.0), (0.6, 0.0), (0.75, 0.0), (0.9, 0.0)],
+            &[
+                (0.0, -0.115),
+                (0.19, -0.006),
+                (0.32, -0.009),
+                (0.45, 0.0),
+                (0.6, 0.0),
+                (0.75, 0.0),
+                (0.9, 0.0),
+            ],
             2.0,
             t - 1.09,
         )
-    };
-    pose.hips = dvec3(0.0, height, 0.0);
-    let down = ramp(0.0, 0.26, t) * (1.0 - ramp(0.34, 0.46, t));
-    let air = ramp(0.38, 0.48, t) * (1.0 - ramp(0.86, 1.0, t));
-    let land = ramp(0.97, 1.09, t) * (1.0 - ramp(1.12, 1.36, t));
-    pose.stretch = through(
-        &[
-            (0.0, 1.0),
-            (0.28, 0.90),
-            (0.44, 1.10),
-            (0.70, 1.0),
-            (0.93, 1.06),
-            (1.08, 0.86),
-            (1.27, 1.04),
-            (1.40, 1.0),
-        ],
-        LEAP,
-        t,
-    );
-    // Squeezed by both impacts.
-    pose.open = 1.0 - 0.40 * down - 0.93 * ramp(0.93, 1.0, t) * (1.0 - ramp(1.16, 1.26, t));
-    let foot = leap(t, UP - 0.02, DOWN + 0.005);
-    pose.feet = [foot; 2];
-    let lean = 0.42 * down - 0.16 * air + 0.38 * land;
-    pose.turn(Bone::Hips, [0.30 * lean, 0.0, 0.0]);
-    pose.turn(Bone::Spine, [0.35 * lean, 0.0, 0.0]);
-    pose.turn(Bone::Chest, [0.35 * lean, 0.0, 0.0]);
-    let nod = through(
-        &[
-            (0.0, 0.0),
-            (0.30, -0.16),
-            (0.46, -0.26),
-            (0.70, 0.06),
-            (0.94, 0.14),
-            (1.12, 0.02),
-            (1.3, -0.07),
-            (1.5, 0.0),
-        ],
-        LEAP,
-        t,
-    );
-    pose.turn(Bone::Neck, [-0.3 * lean, 0.0, 0.0]);
-    pose.turn(Bone::Head, [-0.35 * lean + nod, 0.0, 0.0]);
-    let wag = through(
-        &[(0.0, 0.0), (0.30, 0.24), (0.52, -0.40), (0.75, 0.05), (1.0, 0.38), (1.2, -0.16), (1.45, 0.03)],
-        LEAP,
-        t,
-    );
-    pose.turn(Bone::Tail1, [wag, 0.0, 0.0]);
-    pose.turn(Bone::Tail2, [0.8 * wag, 0.0, 0.0]);
-    let raise = through(
-        &[
-            (0.0, 0.0),
-            (0.28, -0.28),
-            (0.36, -0.20),
-            (0.52, 0.80),
-            (0.72, 0.88),
-            (0.95, 0.52),
-            (1.12, -0.24),
-            (1.3, 0.06),
-            (1.5, 0.0),
-        ],
-        LEAP,
-        t,
-    );
-    pose.turn_both(Bone::UpperArm, [0.75 * down - 0.30 * air, 0.0, RELAXED + raise]);
-    pose.turn_both(Bone::Forearm, [-0.10, -0.15 - 0.2 * land, 0.35 * raise]);
-    pose
+    }
 }
 
 /// A foot of the leap, in the air between two times.
