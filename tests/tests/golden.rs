@@ -10,9 +10,9 @@ use sinew_bake::recipe::{Recipe, flesh};
 use sinew_bake::{builtin, pack};
 
 /// Content hash of the built-in character's asset.
-const ASSET: u64 = 0xbac7_21a3_b210_3c2e;
+const ASSET: u64 = 0x5159_9b1e_d303_687b;
 /// Digest of the 600 frames.
-const REPLAY: u64 = 0x133f_814f_6ea9_532b;
+const REPLAY: u64 = 0x7c28_923e_f7bc_c5b5;
 /// Frames.
 const FRAMES: u32 = 600;
 
