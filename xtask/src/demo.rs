@@ -88,7 +88,8 @@ fn native(sinew: &Path) -> Result<()> {
     for played in PLAYED {
         call(&format!("play to {played}"), &["play", "builtin", "--asset", ASSET, "-o", played], &[played])?;
     }
-    call("verify the replay natively", &["verify", REPLAY, "--asset", ASSET], &[])
+    call("verify the replay natively", &["verify", REPLAY, "--asset", ASSET], &[])?;
+    call("what it costs", &["bench"], &[])
 }
 
 /// The same replay, in the module that browsers load.

@@ -52,9 +52,14 @@ fn machine() -> String {
 fn line(result: &Value) -> String {
     let peers = result["peers"].as_array().into_iter().flatten();
     let peers: String =
-        peers.map(|p| format!(", {} {:.2}", p["name"].as_str().unwrap_or(""), p["value"])).collect();
+        peers.map(|p| format!(", {} {:.2}", p["name"].as_str().unwrap_or(""), number(&p["value"]))).collect();
     let text = |k: &str| result[k].as_str().unwrap_or("").to_owned();
-    format!("{:16} {:10} {:.2} {}{peers}", text("name"), text("case"), result["value"], text("unit"))
+    let value = number(&result["value"]);
+    format!("{:16} {:15} {value:.2} {}{peers}", text("name"), text("case"), text("unit"))
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
 }
 
 /// Least time of a round, divided by `items`, in ns.
