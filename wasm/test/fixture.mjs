@@ -1,5 +1,5 @@
 // Characters for the tests, baked once.
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import * as baker from 'sinew-wasm/bake';
 
 await baker.init();
@@ -19,4 +19,12 @@ export function shared(path) {
   }
   const glb = readFileSync(url);
   return { glb, ...baker.bake(glb, path) };
+}
+
+/** Paths of the shared data's models in one file, in a fixed order; none where a user does not have it. */
+export function sharedModels() {
+  if (!existsSync(data)) return [];
+  const names = readdirSync(data, { recursive: true }).sort();
+  const whole = (name) => !/"uri"\s*:\s*"(?!data:)/.test(readFileSync(new URL(name, data), 'latin1'));
+  return names.filter((name) => /\.(glb|vrm)$/.test(name) || (name.endsWith('.gltf') && whole(name)));
 }

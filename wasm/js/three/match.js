@@ -3,8 +3,9 @@
 /** The objects that move the asset's joints, in its order. */
 export function findJoints({ parser }, asset) {
   const objects = new Map();
-  for (const [object, { nodes }] of parser.associations) {
-    if (object.isObject3D && nodes !== undefined) objects.set(nodes, object);
+  for (const [object, known] of parser.associations) {
+    // A material made by the loader, as for a mesh without normals, is associated with nothing.
+    if (object.isObject3D && known?.nodes !== undefined) objects.set(known.nodes, object);
   }
   return Array.from(asset.jointNodes, (node) => {
     const object = objects.get(node);
