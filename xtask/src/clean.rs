@@ -7,11 +7,12 @@ use anyhow::{Context, Result};
 use crate::{process, report, workspace};
 
 /// Everything made in the checkout that is not in the repository.
-const MADE: [&str; 8] = [
+const MADE: [&str; 9] = [
     "wasm/pkg",
     "wasm/pkg-bench",
     "wasm/pkg.new",
     "wasm/node_modules",
+    "www/baked",
     "www/dist",
     "www/artifacts",
     "www/node_modules",
