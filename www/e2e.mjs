@@ -62,17 +62,19 @@ const message = (page) => page.evaluate(() => {
   const box = document.querySelector('#message');
   return box.hidden ? '' : box.innerText;
 });
-/** Drops a file on the page, as a person would. */
-async function drop(page, name, bytes) {
-  await page.evaluate(({ name: fileName, base64 }) => {
-    const data = Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
+/** Drops files on the page, as a person would. @param {[string, Uint8Array][]} files name and contents of each */
+async function dropAll(page, files) {
+  await page.evaluate((all) => {
     const dataTransfer = new DataTransfer();
-    dataTransfer.items.add(new File([data], fileName));
+    for (const [name, base64] of all) {
+      dataTransfer.items.add(new File([Uint8Array.from(atob(base64), (char) => char.charCodeAt(0))], name));
+    }
     for (const type of ['dragenter', 'dragover', 'drop']) {
       document.body.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
     }
-  }, { name, base64: Buffer.from(bytes).toString('base64') });
+  }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));
 }
+const drop = (page, name, bytes) => dropAll(page, [[name, bytes]]);
 /** Drops a model and waits until it stands there. */
 async function dropModel(page, place) {
   const name = place.pathname.split('/').at(-1);

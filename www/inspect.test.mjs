@@ -1,6 +1,7 @@
 // Files that the page must refuse, and the words it does it with.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { findBeside } from './src/beside.js';
 import { MAX_BYTES, checkSize, inspect } from './src/inspect.js';
 
 const GOOD = { asset: { version: '2.0' }, meshes: [{}], skins: [{}], nodes: [{ mesh: 0, skin: 0 }] };
@@ -37,11 +38,22 @@ const refused = [
   ['Draco', json({ ...GOOD, extensionsUsed: ['KHR_draco_mesh_compression'] }), /Draco/, /without compression/],
   ['meshopt', glb({ ...GOOD, extensionsUsed: ['EXT_meshopt_compression'] }), /meshopt/, /without compression/],
   ['KTX2', json({ ...GOOD, extensionsRequired: ['KHR_texture_basisu'] }), /KTX2/, /PNG/],
-  ['a file beside it', json({ ...GOOD, buffers: [{ uri: 'a%20b.bin' }] }), /needs a%20b\.bin/, /one \.glb/],
+  ['a file beside it', json({ ...GOOD, buffers: [{ uri: 'a%20b.bin' }] }), /needs a%20b\.bin/, /folder/],
   ['no mesh', json({ ...GOOD, meshes: [] }), /no mesh/, /flesh/],
   ['no skin', json({ ...GOOD, skins: [] }), /no skin/, /armature/],
   ['a skin that no mesh has', json({ ...GOOD, nodes: [{ mesh: 0 }] }), /no skin/, /armature/],
 ];
+
+test('files beside a glTF are found by path, then by name', () => {
+  const needy = { ...GOOD, buffers: [{ uri: 'a%20b.bin' }], images: [{ uri: './tex/c.png' }] };
+  const beside = new Map([['model/a b.bin', 1], ['other/tex/c.png', 2], ['tex/c.png', 3]]);
+  assert.equal(inspect(json(needy), 'a', beside).buffers.length, 1);
+  assert.equal(findBeside(beside, 'tex/c.png'), 2, 'the first whose path ends so');
+  assert.equal(findBeside(new Map([['x/tex/c.png', 1], ['C.PNG', 2]]), './tex/c.png'), 1, 'a path before a name');
+  assert.equal(findBeside(new Map([['C.PNG', 2]]), 'tex/c.png'), 2);
+  assert.throws(() => inspect(json(needy), 'a', new Map([['c.png', 1]])), ({ message }) => /needs a%20b\.bin, which/.test(message));
+  assert.throws(() => inspect(json(needy), 'a'), ({ message }) => /needs a%20b\.bin and 1 more/.test(message));
+});
 
 for (const [what, bytes, message, remedy] of refused) {
   test(`refused: ${what}`, () => {

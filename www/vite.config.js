@@ -15,7 +15,6 @@ export default defineConfig({
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 1500,
   },
-  assetsInclude: ['**/*.sinew', '**/*.glb'],
   worker: { format: 'es' },
   resolve: {
     // `sinew-wasm` is a link to a folder with modules of its own.

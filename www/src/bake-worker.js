@@ -1,16 +1,13 @@
 // The baker, in a thread of its own, so that the page stays alive meanwhile.
 import { bake, init } from 'sinew-wasm/bake';
+import { findBeside } from './beside.js';
 
 const ready = init();
-const tasks = {
-  bake: ({ bytes, name }) => bake(bytes, name),
-};
 
-addEventListener('message', async ({ data: { id, task, ...input } }) => {
+addEventListener('message', async ({ data: { id, bytes, name, beside } }) => {
   try {
     await ready;
-    const result = await tasks[task](input);
-    postMessage({ id, result });
+    postMessage({ id, result: bake(bytes, name, { resolve: (uri) => findBeside(beside, uri) }) });
   } catch (error) {
     postMessage({ id, error: error?.message ?? String(error) });
   }

@@ -19,14 +19,12 @@ function start() {
   });
 }
 
-function call(task, input) {
+/** @param {Map<string, Uint8Array>} beside files by path @returns {Promise<{ asset: Uint8Array, notes: string[] }>} */
+export function bake(bytes, name, beside) {
   if (!worker) start();
   const id = ++last;
   return new Promise((resolve, reject) => {
     waiting.set(id, { resolve, reject });
-    worker.postMessage({ id, task, ...input });
+    worker.postMessage({ id, bytes, name, beside });
   });
 }
-
-/** @returns {Promise<{ asset: Uint8Array, notes: string[] }>} */
-export const bake = (bytes, name) => call('bake', { bytes, name });

@@ -1,12 +1,14 @@
 // Files: dropped anywhere, or chosen.
 
-/** Calls `open(file)` for every file that a person hands to the page. */
+const MOST_FILES = 500;
+
+/** Calls `open(files)`, files by path, whenever a person hands some to the page. */
 export function acceptFiles(open) {
   const input = document.querySelector('#file');
   const choose = () => input.click();
   document.querySelector('#open').addEventListener('click', choose);
   input.addEventListener('change', () => {
-    if (input.files.length) open(best(input.files));
+    if (input.files.length) open(byName(input.files));
     input.value = ''; // the same file may be chosen again
   });
 
@@ -32,10 +34,36 @@ export function acceptFiles(open) {
     dropping(false);
     if (!carriesFiles(event)) return;
     event.preventDefault();
-    if (event.dataTransfer.files.length) open(best(event.dataTransfer.files));
+    // Both are emptied when this listener returns.
+    const entries = [...event.dataTransfer.items].map((item) => item.webkitGetAsEntry?.());
+    const plain = byName(event.dataTransfer.files);
+    const found = entries.some((entry) => entry?.isDirectory) ? within(entries) : Promise.resolve(plain);
+    found.catch(() => plain).then((files) => { if (files.size) open(files); });
   });
   return choose;
 }
 
-/** Of several files, the model. */
-const best = (files) => [...files].find(({ name }) => /\.(glb|gltf|vrm)$/i.test(name)) ?? files[0];
+const byName = (files) => new Map([...files].map((file) => [file.name, file]));
+
+/** Everything in folders. */
+async function within(entries, out = new Map()) {
+  for (const entry of entries.filter(Boolean)) {
+    if (out.size >= MOST_FILES) break; // somebody's whole disk
+    if (entry.isFile) out.set(entry.fullPath.slice(1), await new Promise((resolve, reject) => entry.file(resolve, reject)));
+    else await within(await listing(entry.createReader()), out);
+  }
+  return out;
+}
+
+/** A reader gives some at a time, and none when it is done. */
+async function listing(reader) {
+  const out = [];
+  for (;;) {
+    const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    if (some.length === 0) return out;
+    out.push(...some);
+  }
+}
+
+/** Of several files, the model. @param {Map<string, File>} files */
+export const modelAmong = (files) => [...files.values()].find(({ name }) => /\.(glb|gltf|vrm)$/i.test(name)) ?? [...files.values()][0];

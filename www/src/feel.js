@@ -14,6 +14,10 @@ const REGION = [
   { field: 'maxOffset', label: 'Limit', min: 0, max: 0.5, show: (x) => `${(100 * x).toFixed(1)} %` },
 ];
 
+/** What the baker's own names of regions mean; other names are an author's. */
+const KINDS = { flesh: 'Body', ear: 'Ears', tail: 'Tail', crest: 'Crest', limb: 'Arms and legs' };
+const called = (name) => KINDS[name] ?? `${name.charAt(0).toUpperCase()}${name.slice(1)}`;
+
 const length = (vector) => Math.hypot(...vector);
 
 export class Feel {
@@ -96,7 +100,7 @@ export class Feel {
     this.#regions.querySelector('summary').textContent = `Regions (${regions.length})`;
     this.#regions.querySelector('div').replaceChildren(...regions.flatMap((region) => {
       const title = document.createElement('h3');
-      title.textContent = region.name;
+      title.textContent = called(region.name);
       const rows = REGION.map(({ field, ...how }) => {
         const row = slider({ ...how, change: (value) => this.#change({ regions: [{ name: region.name, [field]: value }] }) });
         row.set(region[field]);

@@ -1,4 +1,5 @@
 // Looks at a file before anything is spent on it, and says in words why it cannot be used.
+import { findBeside, references } from './beside.js';
 import { Problem } from './problem.js';
 
 export const MAX_BYTES = 100 * 2 ** 20;
@@ -21,9 +22,10 @@ export function checkSize(name, bytes) {
 
 /**
  * The JSON of a glTF that can be given flesh.
- * @param {Uint8Array} bytes @param {string} name of the file, for messages @throws Problem
+ * @param {Uint8Array} bytes @param {string} name of the file, for messages
+ * @param {Map<string, unknown>} [beside] files handed in with it @throws Problem
  */
-export function inspect(bytes, name) {
+export function inspect(bytes, name, beside = new Map()) {
   checkSize(name, bytes.length);
   const gltf = isBinary(bytes) ? binary(bytes, name) : text(bytes, name);
   const version = String(gltf.asset?.version ?? '');
@@ -32,7 +34,7 @@ export function inspect(bytes, name) {
     throw new Problem(`${name} is glTF ${version}`, 'Only glTF 2.0 is read. Export it again from the program it was made with.');
   }
   checkExtensions(gltf, name);
-  checkReferences(gltf, name);
+  checkReferences(gltf, name, beside);
   checkSkin(gltf, name);
   return gltf;
 }
@@ -41,7 +43,7 @@ const isBinary = (bytes) => bytes.length >= 4 && view(bytes).getUint32(0, true) 
 const view = (bytes) => new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
 
 const notGltf = (name, why) =>
-  new Problem(`${name} is not a glTF file`, `${why[0].toUpperCase()}${why.slice(1)}. Drop a .glb, a .vrm or a self-contained .gltf.`);
+  new Problem(`${name} is not a glTF file`, `${why[0].toUpperCase()}${why.slice(1)}. Drop a .glb, a .vrm, or a .gltf with the files beside it.`);
 
 function binary(bytes, name) {
   const truncated = () => new Problem(`${name} is cut short`, 'Part of the file is missing. Copy or export it again.');
@@ -82,10 +84,11 @@ function checkExtensions(gltf, name) {
   }
 }
 
-function checkReferences(gltf, name) {
-  const outside = [...(gltf.buffers ?? []), ...(gltf.images ?? [])].find(({ uri }) => uri && !/^(data|blob):/.test(uri));
-  if (!outside) return;
-  throw new Problem(`${name} needs ${outside.uri}, which lies beside it`, 'A page sees only the file that is dropped. Export it as one .glb, or as .gltf with embedded data.');
+function checkReferences(gltf, name, beside) {
+  const [first, ...others] = references(gltf).filter((uri) => findBeside(beside, uri) === undefined);
+  if (!first) return;
+  const more = others.length ? ` and ${others.length} more` : '';
+  throw new Problem(`${name} needs ${first}${more}, which lies beside it`, 'A page sees only what is dropped: drop the whole folder or all its files at once, or export one .glb.');
 }
 
 function checkSkin(gltf, name) {

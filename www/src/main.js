@@ -1,15 +1,15 @@
 // The page: a character on a stage, and everything one may do to it.
 import * as THREE from 'three';
-import { init, simd, version } from 'sinew-wasm';
-import { acceptFiles } from './drop.js';
+import { simd, version } from 'sinew-wasm';
+import { acceptFiles, modelAmong } from './drop.js';
 import { Feel } from './feel.js';
 import { Figures } from './figures.js';
 import { allowGrabbing } from './grab.js';
-import { checkSize } from './inspect.js';
 import { hooks } from './hooks.js';
 import { listen } from './keys.js';
 import { placeLabels } from './labels.js';
-import { builtin, fromFile } from './model.js';
+import { drawLegend } from './legend.js';
+import { fromFile, plum, read } from './model.js';
 import { RootMotion } from './motion.js';
 import { busy, hideMessage, showProblem } from './notice.js';
 import { Panel } from './panel.js';
@@ -47,13 +47,14 @@ export class Page {
       shake: () => this.motion.shake(),
       insets: (insets) => { this.stage.setInsets(insets); this.frame({ keepView: true }); },
     });
-    const choose = acceptFiles((file) => this.open(file));
+    const choose = acceptFiles((files) => this.open(files));
     allowGrabbing(this.stage, this.motion, () => this.actor);
     listen({
       f: () => this.panel.flesh.flip(), s: () => this.panel.side.flip(), h: () => this.panel.heat.flip(),
       ' ': () => this.panel.play(!this.panel.playing), x: () => this.motion.shake(), 0: () => this.home(),
       o: choose, r: () => this.actor && this.replay.toggle(), escape: hideMessage,
     }, (x, y) => this.walk(x, y));
+    drawLegend();
     if (calm) this.panel.play(false);
   }
 
@@ -87,15 +88,14 @@ export class Page {
     this.frame();
   }
 
-  /** Opens a file; on any problem the character that is there stays. */
-  async open(file) {
-    const turn = ++this.#turn; // the last file wins
+  /** Opens a model, with files beside it; on any problem the character that is there stays. @param {Map<string, File>} files by path */
+  async open(files) {
+    const turn = ++this.#turn; // the last model wins
     hideMessage();
+    const file = modelAmong(files);
     try {
-      checkSize(file.name, file.size);
-      const bytes = new Uint8Array(await file.arrayBuffer());
-      if (/\.replay$/i.test(file.name)) return this.replay.load(bytes);
-      const actor = await busy(`Giving flesh to ${file.name}`, () => fromFile(bytes, file.name));
+      if (/\.replay$/i.test(file.name)) return this.replay.load(await read(file));
+      const actor = await busy(`Giving flesh to ${file.name}`, () => fromFile(file, files));
       if (turn === this.#turn) this.show(actor);
       else actor.dispose();
     } catch (error) {
@@ -149,8 +149,7 @@ async function main() {
     throw new Problem('This page needs WebGL 2', 'Turn on hardware acceleration in the settings of your browser, or open the page in another one.');
   }
   page.stage.renderer.setAnimationLoop((now) => page.tick(now));
-  await init();
-  page.show(await busy('Growing the character', builtin));
+  page.show(await busy('Loading the character', plum));
   globalThis.sinew = hooks(page, { version: version(), simd });
 }
 

@@ -11,17 +11,17 @@ export class Quality {
   /** @param {import('./stage.js').Stage} stage */
   constructor(stage) {
     this.stage = stage;
-    this.raise();
+    this.raise({ plain: stage.software });
   }
 
-  /** All as good as it gets. */
-  raise() {
+  /** All as good as it gets, or where the processor draws, as good as it can bear. */
+  raise({ plain = false } = {}) {
     const { stage } = this;
-    stage.limit(2);
-    stage.plain(false);
+    stage.limit(plain ? 1 : 2);
+    stage.plain(plain);
     this.#slow = 0;
     this.#steps = [() => stage.limit(1), () => stage.plain(true), () => stage.limit(0.6)];
-    if (devicePixelRatio <= 1) this.#steps.shift(); // nothing to gain there
+    this.#steps.splice(0, plain ? 2 : devicePixelRatio <= 1 ? 1 : 0); // what is done, or gains nothing
   }
 
   /** The last frame took that long. */

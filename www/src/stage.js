@@ -43,8 +43,6 @@ export class Stage {
   }
 
   #light() {
-    this.#reflections = studio(this.renderer);
-    this.scene.environment = this.#reflections;
     this.scene.environmentIntensity = 0.45;
     const sun = (color, intensity, x, y, z) => {
       const light = new THREE.DirectionalLight(color, intensity);
@@ -74,9 +72,16 @@ export class Stage {
     this.resize();
   }
 
+  /** Whether the processor draws: it takes seconds over what a graphics card does in no time. */
+  get software() {
+    const gl = this.renderer.getContext();
+    const info = gl.getExtension('WEBGL_debug_renderer_info');
+    return /swiftshader|llvmpipe|softpipe|basic render/i.test(gl.getParameter(info?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER));
+  }
+
   /** For machines without a graphics card: light without reflections, coarser shadow. */
   plain(plain) {
-    this.scene.environment = plain ? null : this.#reflections;
+    this.scene.environment = plain ? null : (this.#reflections ??= studio(this.renderer));
     const { shadow } = this.#key;
     shadow.mapSize.setScalar(plain ? 1024 : 2048);
     shadow.map?.dispose();

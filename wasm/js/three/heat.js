@@ -1,13 +1,12 @@
 import { BufferAttribute, DynamicDrawUsage, MeshStandardMaterial } from 'three';
 
-// Clay at rest, then ever darker with the square root of the share of the largest offset: ordinary motion
-// uses a few hundredths of that, and would else have one colour. Linear RGB.
-const STOPS = [
-  [0.73, 0.708, 0.672],
-  [0.973, 0.462, 0.01],
-  [0.847, 0.141, 0.019],
-  [0.497, 0.038, 0.089],
-  [0.055, 0.003, 0.138],
+// Linear RGB. Each is darker than the one before, so that eyes which miss a hue still tell them apart.
+export const heatStops = [
+  [0.68, 0.72, 0.78],
+  [0.92, 0.6, 0.13],
+  [0.83, 0.19, 0.06],
+  [0.5, 0.03, 0.14],
+  [0.13, 0.01, 0.24],
 ];
 const STEPS = 255;
 
@@ -15,12 +14,16 @@ const STEPS = 255;
 function ramp() {
   const out = new Float32Array(3 * (STEPS + 1));
   for (let i = 0; i <= STEPS; i++) {
-    const at = (i / STEPS) * (STOPS.length - 1);
-    const low = Math.min(Math.floor(at), STOPS.length - 2);
-    for (let c = 0; c < 3; c++) out[3 * i + c] = STOPS[low][c] + (at - low) * (STOPS[low + 1][c] - STOPS[low][c]);
+    const at = (i / STEPS) * (heatStops.length - 1);
+    const low = Math.min(Math.floor(at), heatStops.length - 2);
+    const [from, to] = [heatStops[low], heatStops[low + 1]];
+    for (let c = 0; c < 3; c++) out[3 * i + c] = from[c] + (at - low) * (to[c] - from[c]);
   }
   return out;
 }
+
+/** The colour of a share of the largest offset; its root, since ordinary motion needs only a small share. */
+const step = (share) => (share > 0 ? Math.round(STEPS * Math.sqrt(Math.min(share, 1))) : 0);
 
 /** Colours meshes by how far their flesh is from rest. */
 export class Heat {
@@ -42,7 +45,7 @@ export class Heat {
     for (const { flesh, color } of this.#parts) {
       const part = flesh.part(heat, 1);
       for (let i = 0; i < part.length; i++) {
-        const from = 3 * Math.min(STEPS, Math.round(STEPS * Math.sqrt(part[i])));
+        const from = 3 * step(part[i]);
         for (let c = 0; c < 3; c++) color.array[3 * i + c] = this.#ramp[from + c];
       }
       color.needsUpdate = true;

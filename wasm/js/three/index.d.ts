@@ -64,7 +64,7 @@ export declare class SinewCharacter {
   /** As {@link Character.tunables}. */
   get tunables(): Tunables;
   set tunables(tunables: SomeTunables);
-  /** Whether the flesh is coloured by how far it is from rest. Materials are swapped meanwhile. */
+  /** Whether the flesh is coloured by how far it is from rest: see `heatStops`. Materials are swapped meanwhile. */
   heatMap: boolean;
 
   record(snapshotEvery?: number): void;
@@ -102,3 +102,9 @@ export declare class SinewHelper extends LineSegments {
   update(): void;
   dispose(): void;
 }
+
+/**
+ * Colours of the heat map, linear RGB, from rest to the largest offset, evenly along the root of the share:
+ * of five colours the second stands for 1/16 of the largest offset, the third for 1/4, the fourth for 9/16.
+ */
+export declare const heatStops: readonly (readonly [number, number, number])[];
