@@ -6,6 +6,7 @@ import { preview } from 'vite';
 import { launch, screenshot, watch } from './browser.mjs';
 
 const DATA = new URL('../../shared/data/', import.meta.url);
+const RIGGED = ['RiggedFigure.gltf', 'RiggedFigure0.bin'].map((name) => new URL(`khronos/${name}`, DATA));
 const FOX = new URL('khronos/Fox.glb', DATA);
 const skip = existsSync(FOX) || process.env.CI === 'true' ? false : 'no ../shared/data';
 // Without a graphics card every pixel costs: wide enough for the card of controls, and no wider.
@@ -53,6 +54,13 @@ const moved = (page) => page.evaluate(() => {
   }
   return count;
 });
+/** How far flesh has moved any vertex, units of the character. */
+const farthest = (page) => page.evaluate(() => {
+  const [own, twin] = [globalThis.sinew.positions(), globalThis.sinew.positions(true)];
+  let most = 0;
+  for (let i = 0; i < own.length; i += 3) most = Math.max(most, Math.hypot(own[i] - twin[i], own[i + 1] - twin[i + 1], own[i + 2] - twin[i + 2]));
+  return most / globalThis.sinew.state.unit;
+});
 const picture = async (page, name) => {
   await page.evaluate(() => globalThis.sinew.sharpen());
   await frames(page, 2);
@@ -90,6 +98,12 @@ describe('the page', () => {
   before(async () => { page = await open({ viewport: SMALL }, errors); });
   after(async () => { await page?.close(); });
 
+  test('has not loaded the baker', async () => {
+    const names = await page.evaluate(() => performance.getEntriesByType('resource').map(({ name }) => name));
+    assert.ok(names.some((name) => /plum\.sinew/.test(name)), 'its own character came baked');
+    assert.ok(!names.some((name) => /bake[_-]/.test(name)), names.join('\n'));
+  });
+
   test('is isolated, runs the SIMD build, and moves', async () => {
     assert.equal(await page.evaluate(() => globalThis.crossOriginIsolated), true);
     assert.equal(await page.evaluate(() => globalThis.sinew.simd), true);
@@ -102,6 +116,7 @@ describe('the page', () => {
     await page.click('#shake');
     await frames(page, 6);
     assert.ok((await moved(page)) > 100, 'flesh moves');
+    assert.ok((await farthest(page)) > 0.005, 'enough to be seen');
     await page.keyboard.press('f');
     await frames(page, 2);
     assert.equal((await state(page)).flesh, false);
@@ -217,6 +232,15 @@ describe('the page', () => {
     await page.click('#shake');
     await frames(page, 8);
     assert.ok((await moved(page)) > 50, 'flesh moves');
+  });
+
+  test('a glTF of several files opens when they come together, and says what it lacks alone', { skip }, async () => {
+    const files = RIGGED.map((place) => [place.pathname.split('/').at(-1), readFileSync(place)]);
+    await dropAll(page, files.slice(0, 1));
+    await page.waitForFunction(() => /needs RiggedFigure0\.bin/.test(document.querySelector('#message').innerText));
+    await dropAll(page, files);
+    await page.waitForFunction(() => globalThis.sinew.state.name === 'RiggedFigure.gltf');
+    assert.equal(await message(page), '');
   });
 
   test('said nothing in its console', () => assert.deepEqual(errors, []));

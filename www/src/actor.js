@@ -6,6 +6,8 @@ import { Twin } from './twin.js';
 
 const FADE_SECONDS = 0.3;
 const SAMPLES = 6;
+/** The name of a clip without what some exporters put before it: `Armature|Walk_Slow`. */
+const called = ({ name }, i) => name.split('|').at(-1).replaceAll('_', ' ').trim() || `Clip ${i + 1}`;
 const mean = new THREE.Vector3();
 const at = new THREE.Vector3();
 
@@ -28,7 +30,7 @@ export class Actor {
     this.twin = new Twin(this.model);
     this.mixer = new THREE.AnimationMixer(this.model);
     this.animations = gltf.animations;
-    this.clips = [...gltf.animations.map((clip, i) => clip.name || `Clip ${i + 1}`), 'Built-in shake'];
+    this.clips = [...gltf.animations.map(called), 'Built-in shake'];
     this.box = this.#measure();
     this.character = new SinewCharacter(gltf, asset);
     this.asset = this.character.asset;
@@ -157,7 +159,8 @@ export class Actor {
       node.geometry?.dispose();
       node.skeleton?.dispose();
       for (const material of [node.material ?? []].flat()) {
-        for (const value of Object.values(material)) if (value?.isTexture) { value.dispose(); value.source?.data?.close?.(); }
+        // Their bitmaps stay open: the renderer's material of shadows may still ask for the last one.
+        for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
         material.dispose();
       }
     });

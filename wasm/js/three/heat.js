@@ -2,9 +2,9 @@ import { BufferAttribute, DynamicDrawUsage, MeshStandardMaterial } from 'three';
 
 // Linear RGB. Each is darker than the one before, so that eyes which miss a hue still tell them apart.
 export const heatStops = [
-  [0.68, 0.72, 0.78],
-  [0.92, 0.6, 0.13],
-  [0.83, 0.19, 0.06],
+  [0.53, 0.57, 0.63],
+  [0.85, 0.5, 0.09],
+  [0.78, 0.17, 0.05],
   [0.5, 0.03, 0.14],
   [0.13, 0.01, 0.24],
 ];
