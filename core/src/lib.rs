@@ -17,8 +17,8 @@
 //! # Determinism contract
 //!
 //! Same asset, same inputs, same steps: the same bits on every supported target, with or without
-//! SIMD, at any optimization level. Only `+ − × ÷ √` and comparisons in `f32`, and the elementary
-//! functions of [`math::float`], are used; sums have one written order. The host must round to
+//! SIMD, at any optimization level. Only `+ − × ÷ √` and comparisons in `f32`, and elementary functions
+//! that are correctly rounded for every input ([`math::rounding`]), are used; sums have one written order. The host must round to
 //! nearest and keep subnormals ([`math::canary`] tells). NaN and infinities are refused at the door.
 #![no_std]
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare bits"))]

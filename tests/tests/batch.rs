@@ -13,7 +13,7 @@ fn joints(count: usize, who: usize, frame: u8) -> Vec<Affine> {
         let phase = 0.1 * f32::from(frame) + f32::from(u8::try_from(who + joint).expect("small"));
         sinew::math::affine::from_trs(
             [0.0; 3],
-            [0.0, 0.0, 0.2 * sinew::math::float::sin_cos(phase).0, 1.0],
+            [0.0, 0.0, 0.2 * sinew::math::trig::sin(phase), 1.0],
             [1.0; 3],
         )
     };

@@ -12,7 +12,7 @@ use sinew_bake::{builtin, pack};
 /// Content hash of the built-in character's asset.
 const ASSET: u64 = 0x5159_9b1e_d303_687b;
 /// Digest of the 600 frames.
-const REPLAY: u64 = 0x7c28_923e_f7bc_c5b5;
+const REPLAY: u64 = 0x42fd_34b2_7db7_cb51;
 /// Frames.
 const FRAMES: u32 = 600;
 

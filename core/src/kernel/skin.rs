@@ -211,7 +211,7 @@ mod tests {
     use std::vec::Vec;
 
     fn turn(angle: f32) -> [f32; 4] {
-        let (s, c) = crate::math::float::sin_cos(0.5 * angle);
+        let (s, c) = crate::math::trig::sin_cos(0.5 * angle);
         [0.0, s, 0.0, c]
     }
 

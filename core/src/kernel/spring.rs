@@ -19,7 +19,9 @@
 use super::target::Target;
 use crate::lanes::{F32x4, Lanes};
 use crate::math::float::{max, min, sqrt};
-use crate::math::psi::psi;
+use crate::math::psi::{cut, psi_wide};
+use crate::math::twin::Twin;
+use crate::math::wide::Wide;
 
 /// Parameters of a spring, per unit mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,15 +51,21 @@ pub struct Response {
 }
 
 impl Response {
-    /// The response of `spring` over `h` seconds, `h ≥ 0` and finite.
+    /// The response of `spring` over `h` seconds, `0 ≤ h ≤ 10¹⁵`.
     #[must_use]
     pub fn new(spring: Spring, h: f32) -> Self {
-        // Far beyond any domain the arguments are cut, so that their squares stay finite.
-        let (a, b) = (min(spring.kd * h, 1e12), min(spring.ks * h * h, 1e18));
-        let [p0, p1, p2, p3, _] = psi(a, b);
+        // Products far beyond any domain are kept finite.
+        let (kd, ks) = (min(spring.kd, 1e30 / h), min(spring.ks, 1e30 / (h * h)));
+        let stiffness = ks * h * h;
+        let [h, ks, kd] = [h, ks, kd].map(Twin::new);
+        let (a, b, _) = cut(kd * h, ks * h * h);
+        // A spring too stiff for the step counts as the stiffest that is not.
+        let ks = if b.hi < stiffness { b / (h * h) } else { ks };
+        let [p0, p1, p2, p3, _] = psi_wide(a, b);
+        let hh = h * h;
         Self {
-            y: [1.0 - b * p2, h * p1, h * h * (p2 - p3), h * h * p3],
-            u: [-spring.ks * h * p1, p0, h * (p1 - p2), h * p2],
+            y: [Twin::new(1.0) - b * p2, h * p1, hh * (p2 - p3), hh * p3].map(Wide::head),
+            u: [-(ks * h * p1), p0, h * (p1 - p2), h * p2].map(Wide::head),
         }
     }
 

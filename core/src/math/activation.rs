@@ -101,7 +101,7 @@ fn logistic<W: Wide>(a: W, v: W) -> Scaled<W> {
     let one = W::new(1.0);
     if v.head() < 0.0 {
         let e = Exponential::new(v);
-        let Scaled { m, k } = e.exp();
+        let Scaled { m, k } = e.scaled();
         Scaled { m: a * m / (one + e.value()), k }
     } else {
         (a / (one + Exponential::new(-v).value())).into()

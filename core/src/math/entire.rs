@@ -55,7 +55,7 @@ impl Elementary for EntireC {
         if u < 3_600.0 {
             entire_wide(W::new(if u < LOWEST { LOWEST } else { u })).0.into()
         } else {
-            let Scaled { m, k } = Exponential::new(W::new(u).sqrt()).exp();
+            let Scaled { m, k } = Exponential::new(W::new(u).sqrt()).scaled();
             Scaled { m, k: k - 1 }
         }
     }
@@ -78,7 +78,7 @@ impl Elementary for EntireS {
             entire_wide(W::new(if u < LOWEST { LOWEST } else { u })).1.into()
         } else {
             let w = W::new(u).sqrt();
-            let Scaled { m, k } = Exponential::new(w).exp();
+            let Scaled { m, k } = Exponential::new(w).scaled();
             Scaled { m: m / w, k: k - 1 }
         }
     }
@@ -117,7 +117,7 @@ impl Elementary for Sinhc {
             let t = e.minus_one();
             ((t + t / (t + W::new(1.0))) / (a + a)).into()
         } else {
-            let Scaled { m, k } = e.exp();
+            let Scaled { m, k } = e.scaled();
             Scaled { m: m / a, k: k - 1 }
         }
     }

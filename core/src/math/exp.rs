@@ -42,18 +42,18 @@ impl<W: Wide> Exponential<W> {
 
     /// `eˣ`.
     #[inline]
-    pub(crate) fn exp(self) -> Scaled<W> {
+    pub(crate) fn scaled(self) -> Scaled<W> {
         Scaled { m: self.t + self.t * self.p, k: self.k }
     }
 
-    /// `eˣ`, as a plain number, for `x ≤ 60`; what is below 2⁻⁶⁴ is some number below 2⁻⁶³.
+    /// `eˣ`, as a plain number, for `x ≤ 60`; 0 below 2⁻¹⁰⁰.
     #[inline]
     pub(crate) fn value(self) -> W {
-        let Scaled { m, k } = self.exp();
-        m.scale(k.clamp(-64, 100))
+        let Scaled { m, k } = self.scaled();
+        if k < -100 { W::new(0.0) } else { m.scale(k) }
     }
 
-    /// `eˣ − 1` without cancellation, for `x ≤ 60`.
+    /// `eˣ − 1` without cancellation, for `x ≤ 60`; below 2⁻⁶⁴ the exponential is nothing beside −1.
     #[inline]
     pub(crate) fn minus_one(self) -> W {
         let t = self.t.scale(self.k.clamp(-64, 100));
@@ -82,7 +82,7 @@ impl Elementary for Exp {
     }
 
     fn evaluate<W: Wide>(x: f32) -> Scaled<W> {
-        Exponential::new(W::new(x)).exp()
+        Exponential::new(W::new(x)).scaled()
     }
 }
 
@@ -105,7 +105,7 @@ impl Elementary for Expm1 {
 
     fn evaluate<W: Wide>(x: f32) -> Scaled<W> {
         let e = Exponential::new(W::new(x));
-        if x < 60.0 { e.minus_one().into() } else { e.exp() }
+        if x < 60.0 { e.minus_one().into() } else { e.scaled() }
     }
 }
 
@@ -150,7 +150,7 @@ impl<const K: usize> Elementary for Phi<K> {
         if x < 60.0 {
             phi_wide(z)[K].into()
         } else {
-            let Scaled { m, k } = Exponential::new(z).exp();
+            let Scaled { m, k } = Exponential::new(z).scaled();
             Scaled { m: (1..K).fold(m / z, |m, _| m / z), k }
         }
     }
@@ -172,15 +172,8 @@ pub(crate) fn phi_wide<W: Wide>(z: W) -> [W; 4] {
         }
         c
     };
-    const LEAD: [f64; 7] = [
-        1.0 / 362_880.0,
-        1.0 / 40_320.0,
-        1.0 / 5_040.0,
-        1.0 / 720.0,
-        1.0 / 120.0,
-        1.0 / 24.0,
-        1.0 / 6.0,
-    ];
+    const LEAD: [f64; 7] =
+        [1.0 / 362_880.0, 1.0 / 40_320.0, 1.0 / 5_040.0, 1.0 / 720.0, 1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0];
     let (one, half) = (W::new(1.0), W::new(0.5));
     let near = z.head();
     if near > -1.0 && near < 1.0 {

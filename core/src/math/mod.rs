@@ -12,6 +12,7 @@ pub mod noise;
 pub mod psi;
 pub mod quat;
 pub mod rounding;
+pub mod theta;
 pub mod trig;
 pub mod twin;
 pub mod vec3;

@@ -1,6 +1,7 @@
 //! Unit quaternions `[x, y, z, w]`.
 
-use super::float::{acos, sin_cos, sqrt};
+use super::float::sqrt;
+use super::trig::{acos, sin};
 
 /// No rotation.
 pub const IDENTITY: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
@@ -88,14 +89,15 @@ pub fn slerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
         return nlerp(a, b, t); // less than 1e-5 rad from slerp, and free of 0/0
     }
     let angle = acos(cosine);
-    let (sine, _) = sin_cos(angle);
-    let (wa, wb) = (sin_cos((1.0 - t) * angle).0 / sine, sin_cos(t * angle).0 / sine);
+    // Their common factor 1/sin(angle) goes with the normalization.
+    let (wa, wb) = (sin((1.0 - t) * angle), sin(t * angle));
     normalize([0, 1, 2, 3].map(|i| wa * a[i] + wb * b[i]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::trig::sin_cos;
 
     fn axis(x: f32, y: f32, z: f32, angle: f32) -> [f32; 4] {
         let (s, c) = sin_cos(0.5 * angle);

@@ -4,8 +4,8 @@
 //! x = n·π/2 + r,  |r| ≤ π/4 + 2⁻¹⁵        sin r, cos r by Taylor of degree 17 and 16, truncation below 2⁻⁵⁶
 //! ```
 
-use super::float::{abs, clamp, horner, sqrt};
 use super::exp::TO_INTEGER;
+use super::float::{abs, clamp, horner, sqrt};
 use super::hard;
 use super::rounding::{Elementary, correctly_rounded};
 use super::wide::{Scaled, Wide, series};
@@ -99,6 +99,12 @@ pub fn sin(x: f32) -> f32 {
 #[must_use]
 pub fn cos(x: f32) -> f32 {
     correctly_rounded::<Cos>(x)
+}
+
+/// `(sin x, cos x)`, see [`sin`] and [`cos`].
+#[must_use]
+pub fn sin_cos(x: f32) -> (f32, f32) {
+    (sin(x), cos(x))
 }
 
 /// [`acos`].

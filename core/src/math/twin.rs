@@ -98,6 +98,8 @@ impl Div for Twin {
 }
 
 impl Wide for Twin {
+    type Narrow = f32;
+
     const ROOTS_OF_TWO: [Self; 32] = {
         let mut roots = [Self::nearest(0.0); 32];
         let mut j = 0;
@@ -141,13 +143,13 @@ impl Wide for Twin {
     }
 
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "constants, rounded when compiled")]
-    fn narrow<const N: usize>(coefficients: &[f64; N], x: Self) -> Self {
-        let mut sum = 0.0;
-        for c in coefficients {
-            sum = sum * x.hi + *c as f32;
-        }
-        Self::new(sum)
+    fn narrow(self) -> f32 {
+        self.hi
+    }
+
+    #[inline(always)]
+    fn widen(x: f32) -> Self {
+        Self::new(x)
     }
 }
 
@@ -166,7 +168,8 @@ mod tests {
             s = s.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             #[allow(clippy::cast_possible_truncation, reason = "the upper bits")]
             let m = (s >> 40) as u32;
-            let hi = f32::from_bits((0x3f80_0000 - (30 << 23)) + m * 30) * if s & (1 << 20) == 0 { 1.0 } else { -1.0 };
+            let hi = f32::from_bits((0x3f80_0000 - (30 << 23)) + m * 30)
+                * if s & (1 << 20) == 0 { 1.0 } else { -1.0 };
             #[allow(clippy::cast_precision_loss, reason = "24 bits")]
             let part = ((s >> 12) & 0xffff) as f32 / 65_536.0 - 0.5;
             quick_sum(hi, hi * part * f32::from_bits(0x3380_0000))

@@ -14,6 +14,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 pub trait Wide:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
+    /// The type of terms that are small beside a sum: `f32` for pairs of it.
+    type Narrow: Wide;
     /// `2^(j/32)`, `j = 0 … 31`.
     const ROOTS_OF_TWO: [Self; 32];
     /// Exactly `x`.
@@ -26,8 +28,10 @@ pub trait Wide:
     fn sqrt(self) -> Self;
     /// `self·2ᵏ`, exactly, for `|k| ≤ 100`.
     fn scale(self, k: i32) -> Self;
-    /// A polynomial whose terms matter to `f32` digits only, highest power first.
-    fn narrow<const N: usize>(coefficients: &[f64; N], x: Self) -> Self;
+    /// Leading digits, for terms so small that the rest does not count.
+    fn narrow(self) -> Self::Narrow;
+    /// Exactly `x`.
+    fn widen(x: Self::Narrow) -> Self;
 }
 
 /// `m·2ᵏ`: a result that may lie beyond the range of `f32`.
@@ -48,11 +52,14 @@ impl<W> From<W> for Scaled<W> {
 /// A power series, highest power first: `lead` in full width, the `tail` of higher powers narrow.
 #[inline]
 pub fn series<W: Wide, const T: usize, const L: usize>(tail: &[f64; T], lead: &[f64; L], x: W) -> W {
-    let mut sum = W::narrow(tail, x);
-    for c in lead {
-        sum = sum * x + W::constant(*c);
-    }
-    sum
+    let tail = horner(tail, W::Narrow::constant(0.0), x.narrow());
+    horner(lead, W::widen(tail), x)
+}
+
+/// `((sum·x + c₀)·x + c₁)·x + …`
+#[inline(always)]
+fn horner<W: Wide, const N: usize>(coefficients: &[f64; N], sum: W, x: W) -> W {
+    coefficients.iter().fold(sum, |sum, c| sum * x + W::constant(*c))
 }
 
 /// `2ᵏ` for `−126 ≤ k ≤ 127`.
@@ -108,6 +115,8 @@ const ROOTS_OF_TWO_BITS: [u64; 32] = [
 ];
 
 impl Wide for f64 {
+    type Narrow = Self;
+
     const ROOTS_OF_TWO: [Self; 32] = ROOTS_OF_TWO;
 
     #[inline(always)]
@@ -121,9 +130,8 @@ impl Wide for f64 {
     }
 
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "rounds")]
     fn head(self) -> f32 {
-        self as f32
+        rounded(self)
     }
 
     #[inline(always)]
@@ -144,13 +152,70 @@ impl Wide for f64 {
     }
 
     #[inline(always)]
-    fn narrow<const N: usize>(coefficients: &[f64; N], x: Self) -> Self {
-        let mut sum = 0.0;
-        for c in coefficients {
-            sum = sum * x + c;
-        }
-        sum
+    fn narrow(self) -> Self {
+        self
     }
+
+    #[inline(always)]
+    fn widen(x: Self) -> Self {
+        x
+    }
+}
+
+/// For the small terms of pairs of `f32`; the elementary functions themselves need more.
+impl Wide for f32 {
+    type Narrow = Self;
+
+    const ROOTS_OF_TWO: [Self; 32] = {
+        let mut roots = [0.0; 32];
+        let mut j = 0;
+        while j < 32 {
+            roots[j] = rounded(ROOTS_OF_TWO[j]);
+            j += 1;
+        }
+        roots
+    };
+
+    #[inline(always)]
+    fn new(x: f32) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn constant(c: f64) -> Self {
+        rounded(c)
+    }
+
+    #[inline(always)]
+    fn head(self) -> f32 {
+        self
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        super::float::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn scale(self, k: i32) -> Self {
+        self * power_of_two(k)
+    }
+
+    #[inline(always)]
+    fn narrow(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn widen(x: Self) -> Self {
+        x
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, reason = "rounds to nearest")]
+const fn rounded(c: f64) -> f32 {
+    c as f32
 }
 
 /// `2ᵏ` for `−1022 ≤ k ≤ 1023`.

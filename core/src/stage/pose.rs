@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     fn root(x: f64, angle: f32) -> Root {
-        let (s, c) = crate::math::float::sin_cos(0.5 * angle);
+        let (s, c) = crate::math::trig::sin_cos(0.5 * angle);
         Root { translation: [x, 0.0, 2.0], rotation: [0.0, s, 0.0, c] }
     }
 

@@ -89,7 +89,11 @@ fn line(function: &Function, swept: &Swept) -> String {
     for (name, body) in ["f64", "f32 pairs"].iter().zip(&swept.bodies) {
         let (worst, at) = body.worst;
         let mean = body.sum / swept.inputs as f64;
-        text += &format!(" | {name}: worst {worst:.9} ulp at {:e} mean {mean:.4} wrong {}", f32::from_bits(at), body.wrong);
+        text += &format!(
+            " | {name}: worst {worst:.9} ulp at {:e} mean {mean:.4} wrong {}",
+            f32::from_bits(at),
+            body.wrong
+        );
     }
     text + &format!(" | by MPFR {} | {:.1} s", swept.undecided, swept.seconds)
 }

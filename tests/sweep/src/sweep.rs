@@ -107,7 +107,8 @@ fn ulps(y: f32, truth: f64) -> f64 {
     }
     let finite = |x: f64| x.clamp(-2_f64.powi(128), 2_f64.powi(128));
     let exponent = ((truth.abs().to_bits() >> 52).cast_signed() - 1023).clamp(-126, 127);
-    (finite(f64::from(y)) - finite(truth)).abs() * f64::from_bits(((1023 + 23 - exponent) << 52).cast_unsigned())
+    (finite(f64::from(y)) - finite(truth)).abs()
+        * f64::from_bits(((1023 + 23 - exponent) << 52).cast_unsigned())
 }
 
 /// Sweeps over every `2^stride`-th bit pattern and, if that is not every, over the special ones.
@@ -158,6 +159,7 @@ fn special(branches: &[f32]) -> BTreeSet<u32> {
     let powers = (0..=255_u32).map(|exponent| exponent << 23);
     let middles = (0..255_u32).map(|exponent| (exponent << 23) | 0x0040_0000);
     let branches = branches.iter().map(|x| x.to_bits() & 0x7fff_ffff);
-    let magnitudes = powers.chain(middles).chain(branches).flat_map(|m| (0..9).map(move |d| (m + d).saturating_sub(4)));
+    let magnitudes =
+        powers.chain(middles).chain(branches).flat_map(|m| (0..9).map(move |d| (m + d).saturating_sub(4)));
     magnitudes.chain(NAN).flat_map(|m| [m & 0x7fff_ffff, m | 0x8000_0000]).collect()
 }
