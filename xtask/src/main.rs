@@ -6,6 +6,7 @@ mod cache;
 mod clean;
 mod count;
 mod demo;
+mod exhaustive;
 mod npm;
 mod page;
 mod process;
@@ -50,6 +51,15 @@ enum Chore {
         #[arg(long, default_value = "")]
         filter: String,
     },
+    /// Try all 2³² inputs of every elementary function and write `docs/accuracy.md`; takes an hour.
+    Exhaustive {
+        /// One JSON object on standard output, nothing else there.
+        #[arg(long)]
+        json: bool,
+        /// Only functions with this in their name; the table is left alone.
+        #[arg(long, default_value = "")]
+        function: String,
+    },
     /// Build the npm package into `wasm/pkg` and check its size.
     Wasm,
     /// Build the page and serve it.
@@ -84,6 +94,7 @@ fn main() -> ExitCode {
 fn run(chore: Chore) -> Result<bool> {
     let result = match chore {
         Chore::Test { filter } => return test::run(&filter),
+        Chore::Exhaustive { json, function } => return exhaustive::run(json, &function),
         Chore::Setup => setup::run(),
         Chore::Demo { headless, port } => demo::run(headless, port),
         Chore::Wasm => wasm::run(),

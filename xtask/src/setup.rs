@@ -3,12 +3,13 @@
 use anyhow::Result;
 
 use crate::toolchain::Toolchain;
-use crate::{browser, npm, report, wasm};
+use crate::{browser, exhaustive, npm, report, wasm};
 
 /// A part of the set-up: its name, and what makes it ready or says how.
 type Part = (&'static str, fn() -> Result<String>);
 
-const PARTS: [Part; 4] = [
+const PARTS: [Part; 5] = [
+    ("judge of accuracy", exhaustive::ready),
     ("wasm compiler", || Toolchain::for_target(wasm::TARGET).map(|t| format!("{t:?}"))),
     ("npm packages of wasm/", || npm::ready("wasm").map(|()| "installed".to_owned())),
     ("npm packages of www/", || npm::ready("www").map(|()| "installed".to_owned())),

@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use crate::count::Count;
 use crate::report::Step;
 use crate::toolchain::Toolchain;
-use crate::{cache, npm, page, process, report, wasm, workspace};
+use crate::{cache, exhaustive, npm, page, process, report, wasm, workspace};
 
 /// A microcontroller without an operating system: what compiles for it needs no `std`.
 const BARE_METAL: &str = "thumbv7em-none-eabihf";
@@ -29,7 +29,7 @@ struct Check {
     run: fn(&str) -> Result<Outcome>,
 }
 
-const CHECKS: [Check; 12] = [
+const CHECKS: [Check; 13] = [
     Check { name: "format", run: |name| cargo(name, &["fmt", "--all", "--check"], &[]) },
     Check { name: "clippy", run: clippy },
     Check { name: "rustdoc", run: rustdoc },
@@ -37,6 +37,7 @@ const CHECKS: [Check; 12] = [
     Check { name: "tests of xtask", run: tests_of_xtask },
     Check { name: "tests, release", run: tests_release },
     Check { name: "golden tests, native CPU", run: tests_native },
+    Check { name: "accuracy, strided", run: accuracy },
     Check { name: "no_std on bare metal", run: bare_metal },
     Check { name: "wasm package", run: |_| done(wasm::run()) },
     Check { name: "npm tests", run: npm_tests },
@@ -58,6 +59,7 @@ pub(crate) fn run(filter: &str) -> Result<bool> {
     if workspace::ci() {
         cache::prepare()?;
     }
+    exhaustive::ready()?;
     let whole = Step::start("all checks");
     let mut rows = vec![["check", "seconds", "passed", "failed", "result"].map(str::to_owned).to_vec()];
     let mut total = Count::default();
@@ -161,6 +163,11 @@ fn tests_native(name: &str) -> Result<Outcome> {
         .args(["--", "golden"])
         .env("RUSTFLAGS", "-Ctarget-cpu=native");
     program(name, &mut cargo)
+}
+
+/// Every 2¹⁰-th input of each elementary function, and all special ones.
+fn accuracy(name: &str) -> Result<Outcome> {
+    program(name, &mut exhaustive::strided())
 }
 
 fn bare_metal(name: &str) -> Result<Outcome> {

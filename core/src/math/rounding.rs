@@ -65,6 +65,7 @@ fn in_doubt<F: Elementary>(x: f32) -> f32 {
 
 /// Rounds a value of `F(x)` in `f64` once; near a middle between two `f32` the list of `F` has a say.
 #[inline]
+#[must_use]
 pub fn round_doubles<F: Elementary>(x: f32, value: Scaled<f64>) -> f32 {
     /// Bits of an `f64` below those of an `f32`, and how near the middle is near: 2⁻⁴¹ of the value.
     const BELOW: u64 = (1 << 29) - 1;

@@ -156,6 +156,7 @@ impl Wide for Twin {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::wide::f64_power_of_two;
 
     fn value(t: Twin) -> f64 {
         f64::from(t.hi) + f64::from(t.lo)
@@ -179,11 +180,11 @@ mod tests {
 
     #[test]
     fn operations_are_good_to_46_bits() {
-        let bound = 2_f64.powi(-45);
+        let bound = f64_power_of_two(-45);
         for (a, b) in pairs() {
             let (x, y) = (value(a), value(b));
             let near = |got: Twin, want: f64, size: f64| (value(got) - want).abs() <= bound * size;
-            assert!(near(a + b, x + y, (x + y).abs() + 2_f64.powi(-53) * x.abs()), "{a:?} + {b:?}");
+            assert!(near(a + b, x + y, (x + y).abs() + f64_power_of_two(-53) * x.abs()), "{a:?} + {b:?}");
             assert!(near(a * b, x * y, (x * y).abs()), "{a:?} * {b:?}");
             assert!(near(a / b, x / y, (x / y).abs()), "{a:?} / {b:?}");
             let a = if x < 0.0 { -a } else { a };

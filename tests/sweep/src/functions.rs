@@ -1,6 +1,9 @@
 //! The functions under test: both bodies of the runtime, a reference in `f64` with a bound of its error,
 //! and the exact value by MPFR.
 
+#![allow(clippy::disallowed_methods, reason = "std in f64 is the reference, MPFR decides")]
+#![allow(clippy::approx_constant, reason = "places where the code changes its way")]
+
 use rug::Float;
 use rug::ops::NegAssign;
 use sinew::math::activation::{Gelu, Sigmoid, Tanh};

@@ -1,8 +1,11 @@
 //! Sweeps the elementary functions over all 2³² inputs: `cargo run --release -p sinew-sweep -- --help`.
 
 mod functions;
+mod plane;
 mod sweep;
+mod table;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
@@ -11,24 +14,30 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use functions::{FUNCTIONS, Function};
 use sweep::Swept;
+use table::Row;
 
 /// Compares the elementary functions with the nearest `f32` to their real values.
 #[derive(Debug, Parser)]
+#[allow(clippy::struct_excessive_bools, reason = "flags of a command")]
 struct Arguments {
     /// Try every 2^STRIDE-th bit pattern and all special ones; 0 is every one.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=20))]
     stride: u32,
-    /// Only functions with this in their name.
+    /// Only functions with this in their name; `plane` is that of Psi and Theta.
     #[arg(long, default_value = "")]
     function: String,
-    /// One JSON object on standard output.
+    /// One JSON object on standard output, nothing else there.
     #[arg(long)]
     json: bool,
+    /// Write the table, with what it was measured on, to this Markdown file.
+    #[arg(long)]
+    table: Option<PathBuf>,
     /// Print the inputs that are rounded wrongly in `f64`, as the lists in `core/src/math/hard.rs`.
     #[arg(long)]
     hard: bool,
 }
 
+#[allow(clippy::print_stderr, reason = "the one place for errors")]
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(true) => ExitCode::SUCCESS,
@@ -41,39 +50,56 @@ fn main() -> ExitCode {
 }
 
 /// Sweeps; false if a promise is broken.
-#[allow(clippy::print_stdout, reason = "results")]
 fn run(arguments: &Arguments) -> Result<bool> {
     if cfg!(debug_assertions) {
         bail!("an unoptimized sweep takes days: run it with --release");
     }
-    let chosen: Vec<&Function> = FUNCTIONS.iter().filter(|f| f.name.contains(&arguments.function)).collect();
-    if chosen.is_empty() {
+    let mut rows = Vec::new();
+    for function in FUNCTIONS.iter().filter(|f| f.name.contains(&arguments.function)) {
+        let swept = measure(function, arguments.stride)?;
+        let row = Row::of_function(function, &swept);
+        tell(arguments, &row.to_string());
+        if arguments.hard {
+            tell(arguments, &table::hard(function, &swept));
+        }
+        rows.push(row);
+    }
+    if "plane".contains(&arguments.function) {
+        let bar = progress("plane");
+        let swept = plane::sweep(1 << arguments.stride.clamp(6, 12), &bar)?;
+        bar.finish_and_clear();
+        for row in Row::of_plane(&swept) {
+            tell(arguments, &row.to_string());
+            rows.push(row);
+        }
+    }
+    if rows.is_empty() {
         bail!("no function is called {:?}", arguments.function);
     }
-    let mut results = Vec::new();
-    for function in chosen {
-        let swept = measure(function, arguments.stride)?;
-        if !arguments.json {
-            println!("{}", line(function, &swept));
-        }
-        if arguments.hard {
-            print_hard(function, &swept);
-        }
-        results.push((function, swept));
+    if let Some(path) = &arguments.table {
+        table::write(path, &rows, arguments.stride)?;
     }
     if arguments.json {
-        println!("{}", json(&results));
+        print(&table::json(&rows));
     }
-    Ok(results.iter().all(|(_, swept)| swept.bodies.iter().all(|body| body.wrong == 0)))
+    Ok(rows.iter().all(Row::holds))
+}
+
+/// Prints for people.
+fn tell(arguments: &Arguments, text: &str) {
+    if !arguments.json {
+        print(text);
+    }
+}
+
+#[allow(clippy::print_stdout, reason = "results")]
+fn print(text: &str) {
+    println!("{text}");
 }
 
 /// One sweep under a progress bar.
 fn measure(function: &Function, stride: u32) -> Result<Swept> {
-    let bar = ProgressBar::new(1 << 32);
-    if let Ok(style) = ProgressStyle::with_template("{msg:9} {wide_bar} {percent}% {eta}") {
-        bar.set_style(style);
-    }
-    bar.set_message(function.name);
+    let bar = progress(function.name);
     let swept = sweep::sweep(function, stride, &bar);
     bar.finish_and_clear();
     let promised = sweep::promised(function, stride);
@@ -83,48 +109,11 @@ fn measure(function: &Function, stride: u32) -> Result<Swept> {
     Ok(swept)
 }
 
-#[allow(clippy::cast_precision_loss, reason = "a mean for people")]
-fn line(function: &Function, swept: &Swept) -> String {
-    let mut text = format!("{:9} {:28} inputs {:10}", function.name, function.domain, swept.inputs);
-    for (name, body) in ["f64", "f32 pairs"].iter().zip(&swept.bodies) {
-        let (worst, at) = body.worst;
-        let mean = body.sum / swept.inputs as f64;
-        text += &format!(
-            " | {name}: worst {worst:.9} ulp at {:e} mean {mean:.4} wrong {}",
-            f32::from_bits(at),
-            body.wrong
-        );
+/// A bar over all bit patterns.
+fn progress(name: &'static str) -> ProgressBar {
+    let bar = ProgressBar::new(1 << 32);
+    if let Ok(style) = ProgressStyle::with_template("{msg:9} {wide_bar} {percent}% {eta}") {
+        bar.set_style(style);
     }
-    text + &format!(" | by MPFR {} | {:.1} s", swept.undecided, swept.seconds)
-}
-
-#[allow(clippy::cast_precision_loss, reason = "a mean for people")]
-fn json(results: &[(&Function, Swept)]) -> serde_json::Value {
-    let functions = results.iter().map(|(function, swept)| {
-        let worst = swept.bodies.iter().max_by(|a, b| a.worst.0.total_cmp(&b.worst.0)).expect("two bodies");
-        serde_json::json!({
-            "name": function.name,
-            "domain": function.domain,
-            "inputs": swept.inputs,
-            "worst_ulp": worst.worst.0,
-            "worst_at": format!("{:e}", f32::from_bits(worst.worst.1)),
-            "mean_ulp": worst.sum / swept.inputs as f64,
-            "not_correctly_rounded": swept.bodies.iter().map(|b| b.wrong).max(),
-            "by_mpfr": swept.undecided,
-            "seconds": swept.seconds,
-        })
-    });
-    serde_json::json!({ "functions": functions.collect::<Vec<_>>() })
-}
-
-/// The list of a function for the source.
-#[allow(clippy::print_stdout, reason = "results")]
-fn print_hard(function: &Function, swept: &Swept) {
-    let found = &swept.bodies[0].examples;
-    println!("pub(crate) const {}: [(u32, u32); {}] = [", function.name.to_uppercase(), found.len());
-    for (x, y) in found {
-        let halves = |b: u32| format!("0x{:04x}_{:04x}", b >> 16, b & 0xffff);
-        println!("    ({}, {}),", halves(*x), halves(*y));
-    }
-    println!("];");
+    bar.with_message(name)
 }

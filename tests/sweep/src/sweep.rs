@@ -44,8 +44,9 @@ impl Found {
     }
 
     fn merge(&mut self, other: Self) {
-        // Not a rounding error: the smaller input, whatever thread was first.
-        if other.worst.0 > self.worst.0 || (other.worst.0 == self.worst.0 && other.worst.1 < self.worst.1) {
+        // Among equals the smaller input, whatever thread was first.
+        let order = other.worst.0.total_cmp(&self.worst.0).then(self.worst.1.cmp(&other.worst.1));
+        if order.is_gt() {
             self.worst = other.worst;
         }
         self.sum += other.sum;
@@ -105,7 +106,8 @@ fn ulps(y: f32, truth: f64) -> f64 {
     if y.is_nan() || truth.is_nan() {
         return f64::INFINITY;
     }
-    let finite = |x: f64| x.clamp(-2_f64.powi(128), 2_f64.powi(128));
+    const BEYOND: f64 = 2.0 * (1_u128 << 127) as f64;
+    let finite = |x: f64| x.clamp(-BEYOND, BEYOND);
     let exponent = ((truth.abs().to_bits() >> 52).cast_signed() - 1023).clamp(-126, 127);
     (finite(f64::from(y)) - finite(truth)).abs()
         * f64::from_bits(((1023 + 23 - exponent) << 52).cast_unsigned())
