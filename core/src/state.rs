@@ -38,6 +38,19 @@ pub enum StateError {
     Damaged,
 }
 
+impl StateError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Length { .. } => "STATE_WRONG_LENGTH",
+            Self::BadHeader => "STATE_BAD_HEADER",
+            Self::OtherAsset(_) => "STATE_OTHER_ASSET",
+            Self::Damaged => "STATE_DAMAGED",
+        }
+    }
+}
+
 impl fmt::Display for StateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

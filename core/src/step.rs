@@ -32,6 +32,20 @@ pub enum StepError {
     NoSuchClip(u32),
 }
 
+impl StepError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::TimeNotFinite => "STEP_TIME_NOT_FINITE",
+            Self::BadRoot => "STEP_BAD_ROOT",
+            Self::JointCount(_) => "STEP_JOINT_COUNT",
+            Self::BadJoint(_) => "STEP_BAD_JOINT",
+            Self::NoSuchClip(_) => "STEP_NO_SUCH_CLIP",
+        }
+    }
+}
+
 impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

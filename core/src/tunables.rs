@@ -99,6 +99,14 @@ pub struct TunableError {
     pub region: Option<u8>,
 }
 
+impl TunableError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        "TUNABLE_OUT_OF_RANGE"
+    }
+}
+
 impl fmt::Display for TunableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.region {
