@@ -19,8 +19,11 @@ use crate::workspace::{LengthError, Workspace};
 
 /// Offsets below this share of the body count as rest.
 const REST: f32 = 1e-7;
-/// Largest entry of a joint's transform. With an asset's largest numbers, cubed and stiff, it stays finite.
+/// Largest entry of a joint's transform.
 const LARGEST_JOINT: f32 = 1e7;
+/// Largest entry of a joint's map from bind space. With an asset's largest numbers and the stiffest springs the
+/// state stays below 1e32 over any time that a character lives.
+const LARGEST_MAP: f32 = 1e9;
 /// Time shorter than this, s, waits for the next step.
 const SHORTEST_STEP: f32 = 1e-5;
 
@@ -153,10 +156,7 @@ impl<'a> Character<'a> {
         if expected != found {
             return Err(StepError::JointCount(LengthError { expected, found }));
         }
-        let usable = |m: &Affine| m.as_flattened().iter().all(|x| float::abs(*x) <= LARGEST_JOINT);
-        if let Some(i) = pose.root_from_joint.iter().position(|m| !usable(m)) {
-            return Err(StepError::BadJoint(u32::try_from(i).unwrap_or(u32::MAX)));
-        }
+        check_joints(pose.root_from_joint, self.asset.joint_from_bind)?;
         Ok(self.elapse(dt).map_or(Stepped::Held, |dt| {
             pose::palette(pose.root_from_joint, self.asset.joint_from_bind, self.memory.palette);
             self.advance(pose.root, dt)
@@ -174,18 +174,29 @@ impl<'a> Character<'a> {
         if !t.is_finite() {
             return Err(StepError::TimeNotFinite);
         }
-        Ok(self.sample_and_advance(channels, t, root, dt))
+        self.sample_and_advance(channels, t, root, dt)
     }
 
-    fn sample_and_advance(&mut self, channels: Channels<'_>, t: f32, root: Root, dt: f32) -> Stepped {
-        let Some(dt) = self.elapse(dt) else { return Stepped::Held };
+    fn sample_and_advance(
+        &mut self,
+        channels: Channels<'_>,
+        t: f32,
+        root: Root,
+        dt: f32,
+    ) -> Result<Stepped, StepError> {
+        let before = (self.life.pending, self.life.turn);
+        let Some(dt) = self.elapse(dt) else { return Ok(Stepped::Held) };
         let asset = &self.asset;
         let skeleton =
             Skeleton { parents: asset.parents, rest: asset.node_rest, joint_node: asset.joint_node };
         let m = &mut self.memory;
         pose::sample(skeleton, channels, t, m.joints, (m.local, m.model));
+        if let Err(error) = check_joints(m.joints, asset.joint_from_bind) {
+            (self.life.pending, self.life.turn) = before;
+            return Err(error);
+        }
         pose::palette(m.joints, asset.joint_from_bind, m.palette);
-        self.advance(root, dt)
+        Ok(self.advance(root, dt))
     }
 
     /// Advances by `dt` seconds in the rest pose of the asset's skeleton.
@@ -195,7 +206,7 @@ impl<'a> Character<'a> {
     /// As [`Self::step`].
     pub fn step_rest(&mut self, root: Root, dt: f32) -> Result<Stepped, StepError> {
         self.check(&root, dt)?;
-        Ok(self.sample_and_advance(Channels::default(), 0.0, root, dt))
+        self.sample_and_advance(Channels::default(), 0.0, root, dt)
     }
 
     fn check(&self, root: &Root, dt: f32) -> Result<(), StepError> {
@@ -334,6 +345,16 @@ impl<'a> Character<'a> {
     #[must_use]
     pub fn digests(&self) -> Digests {
         Digests::of(&self.memory)
+    }
+}
+
+/// Fails at the first joint whose transform, or whose map from bind space, is not finite or too large.
+fn check_joints(root_from_joint: &[Affine], joint_from_bind: &[Affine]) -> Result<(), StepError> {
+    let within = |m: &Affine, most: f32| m.as_flattened().iter().all(|x| float::abs(*x) <= most);
+    let usable = |(a, b)| within(a, LARGEST_JOINT) && within(&affine::mul(a, b), LARGEST_MAP);
+    match root_from_joint.iter().zip(joint_from_bind).position(|pair| !usable(pair)) {
+        None => Ok(()),
+        Some(i) => Err(StepError::BadJoint(u32::try_from(i).unwrap_or(u32::MAX))),
     }
 }
 

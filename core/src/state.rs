@@ -7,8 +7,9 @@
 //! Little-endian; the digest covers every byte before it.
 
 use crate::character::{Character, surface};
+use crate::kernel::unskin;
 use crate::life::{Life, Phase};
-use crate::math::digest;
+use crate::math::{digest, float};
 use crate::stage::embed;
 use crate::stage::pose::Root;
 use crate::tunables::Tunables;
@@ -18,6 +19,9 @@ const MAGIC: [u8; 4] = *b"SNST";
 const VERSION: u16 = 1;
 /// Bytes before the arrays: header, flags, divisor, turn, pending, ticks, root, tunables.
 pub(crate) const HEAD: usize = 16 + 4 * 4 + 8 + 24 + 16 + 4 * Tunables::WORDS;
+
+/// Largest number of a state that can come of steps (see the limits of a pose).
+const LARGEST: f32 = 1e32;
 
 /// Why bytes are not a state of this character; nothing changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,8 +189,11 @@ impl Character<'_> {
             return Err(StateError::Damaged);
         }
         let life = read_life(&mut r).ok_or(StateError::Damaged)?;
-        let arrays = r.0.as_chunks::<4>().0;
-        if !arrays.iter().all(|x| f32::from_le_bytes(*x).is_finite()) {
+        let (state, offsets) = r.0.split_at(r.0.len() / 6 * 5);
+        let below = |bytes: &[u8], most: f32| {
+            bytes.as_chunks::<4>().0.iter().all(|x| float::abs(f32::from_le_bytes(*x)) <= most)
+        };
+        if !below(state, LARGEST) || !below(offsets, unskin::LARGEST) {
             return Err(StateError::Damaged);
         }
         self.life = life;

@@ -26,7 +26,7 @@ pub enum StepError {
     BadRoot,
     /// The pose has another number of joints than the asset.
     JointCount(LengthError),
-    /// A joint's transform is not finite or larger than `1e7`.
+    /// A joint's transform is not finite or larger than `1e7`, or with its inverse bind matrix larger than `1e9`.
     BadJoint(u32),
     /// The asset has no such clip.
     NoSuchClip(u32),
