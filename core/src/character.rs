@@ -5,10 +5,11 @@ use crate::asset::layout::MAX_REGIONS;
 use crate::kernel::clip::Channels;
 use crate::kernel::skin::{self, Rows};
 use crate::kernel::spring::{Spring, Step};
+use crate::kernel::tiny::{flush, flush_all};
 use crate::kernel::unskin::{self, Limit};
 use crate::life::{Life, Phase};
 use crate::math::affine::{self, Affine};
-use crate::math::{float, noise, quat, vec3};
+use crate::math::{canary, float, noise, vec3};
 use crate::stage::embed::Surface;
 use crate::stage::pose::{Root, Skeleton};
 use crate::stage::skin::Targets;
@@ -24,6 +25,10 @@ const LARGEST_JOINT: f32 = 1e7;
 /// Largest entry of a joint's map from bind space. With an asset's largest numbers and the stiffest springs the
 /// state stays below 1e32 over any time that a character lives.
 const LARGEST_MAP: f32 = 1e9;
+/// A frequency below this, Hz, counts as 0.
+const SLOWEST: f32 = 1e-3;
+/// Bits of the canary's word under which results would differ: rounding, and contraction.
+const ROUNDING: u32 = 0b100_0111;
 /// Time shorter than this, s, waits for the next step.
 const SHORTEST_STEP: f32 = 1e-5;
 
@@ -53,6 +58,8 @@ pub struct Character<'a> {
     /// Weights of the last step, valid for steps of `steps_dt` seconds.
     steps: [Step; MAX_REGIONS],
     steps_dt: f32,
+    /// Canary word of the last step.
+    environment: u32,
 }
 
 impl<'a> Character<'a> {
@@ -92,6 +99,7 @@ impl<'a> Character<'a> {
             limits: [Limit { gain: 1.0, inverse_square: 1.0 }; MAX_REGIONS],
             steps: [Step::new(spring, 1.0, 0.0); MAX_REGIONS],
             steps_dt: 0.0,
+            environment: 0,
         };
         character.apply_tunables();
         Ok(character)
@@ -126,7 +134,7 @@ impl<'a> Character<'a> {
     /// [`TunableError`] for a value out of its range; nothing changes then.
     pub fn set_tunables(&mut self, tunables: &Tunables) -> Result<(), TunableError> {
         tunables.validate()?;
-        self.life.tunables = *tunables;
+        self.life.tunables = tunables.flushed();
         self.apply_tunables();
         Ok(())
     }
@@ -136,7 +144,9 @@ impl<'a> Character<'a> {
         let size = self.asset.meta.body_size;
         for (i, region) in t.regions.iter().enumerate() {
             let frequency = float::min(region.frequency * t.frequency, 60.0);
-            let damping = float::min(region.damping * t.damping, 100.0);
+            // A slower spring would sag beyond all bounds; without stiffness it is free.
+            let frequency = if frequency < SLOWEST { 0.0 } else { frequency };
+            let damping = flush(float::min(region.damping * t.damping, 100.0));
             self.springs[i] = Spring::new(frequency, damping);
             self.limits[i] = region.limit(size, t.gain);
         }
@@ -184,7 +194,7 @@ impl<'a> Character<'a> {
         root: Root,
         dt: f32,
     ) -> Result<Stepped, StepError> {
-        let before = (self.life.pending, self.life.turn);
+        let (before, t) = ((self.life.pending, self.life.turn), flush(t));
         let Some(dt) = self.elapse(dt) else { return Ok(Stepped::Held) };
         let asset = &self.asset;
         let skeleton =
@@ -209,7 +219,11 @@ impl<'a> Character<'a> {
         self.sample_and_advance(Channels::default(), 0.0, root, dt)
     }
 
-    fn check(&self, root: &Root, dt: f32) -> Result<(), StepError> {
+    fn check(&mut self, root: &Root, dt: f32) -> Result<(), StepError> {
+        self.environment = canary::float_environment();
+        if self.environment & ROUNDING != 0 {
+            return Err(StepError::FloatEnvironment(self.environment));
+        }
         if !dt.is_finite() {
             return Err(StepError::TimeNotFinite);
         }
@@ -218,6 +232,7 @@ impl<'a> Character<'a> {
 
     /// Lets `dt` seconds pass; the time to advance by, where a step is due.
     fn elapse(&mut self, dt: f32) -> Option<f32> {
+        let dt = flush(dt);
         if dt <= 0.0 {
             return None;
         }
@@ -230,8 +245,18 @@ impl<'a> Character<'a> {
         Some(core::mem::replace(&mut life.pending, 0.0))
     }
 
+    /// The [`canary`] word of the thread that made the last step: 0 where floats behave as IEEE 754 begins.
+    ///
+    /// A host that flushes subnormals, as audio threads do, shows here (bits 3 to 5) and gets the same bits all the
+    /// same. One that rounds another way gets [`StepError::FloatEnvironment`] instead of a step.
+    #[must_use]
+    pub fn float_environment(&self) -> u32 {
+        self.environment
+    }
+
     /// The stages, in order; the palette is set.
     fn advance(&mut self, root: Root, dt: f32) -> Stepped {
+        let root = root.flushed();
         let forces = self.forces(&root, dt);
         let (asset, m) = (&self.asset, &mut self.memory);
         let active = asset.meta.active as usize;
@@ -260,8 +285,8 @@ impl<'a> Character<'a> {
         let gusts = [0, 1, 2].map(|channel| t.gust * noise::value(life.gust_ticks, channel));
         let strength = float::sqrt(vec3::dot(t.wind, t.wind));
         let wind = [0, 1, 2].map(|i| t.wind[i] * (1.0 + gusts[0]) + strength * 0.5 * gusts[i]);
-        let world = vec3::scale(vec3::add(t.gravity, wind), meta.body_size);
-        let [x, y, z] = quat::to_columns(quat::conjugate(root.rotation));
+        let world = flush_all(vec3::scale(vec3::add(t.gravity, wind), meta.body_size));
+        let [x, y, z] = root.from_world();
         let local = affine::rotate(&[x, y, z, [0.0; 3]], world);
         (local, vec3::scale(meta.bind_down, meta.gravity * meta.body_size))
     }

@@ -228,7 +228,7 @@ fn read_life(r: &mut Reader<'_>) -> Option<Life> {
     let root = Root { translation, rotation };
     let mut words = [0.0; Tunables::WORDS];
     words.iter_mut().for_each(|w| *w = r.f32());
-    let tunables = Tunables::from_words(&words).ok()?;
+    let tunables = Tunables::from_words(&words).ok()?.flushed();
     let (frozen, teleport) = (flags & 4 != 0, flags & 8 != 0);
     let valid = flags < 16 && turn < divisor && (0.0..=1e9).contains(&pending) && root.is_valid();
     valid.then_some(Life { phase, frozen, teleport, divisor, turn, pending, gust_ticks, root, tunables })

@@ -30,6 +30,9 @@ pub enum StepError {
     BadJoint(u32),
     /// The asset has no such clip.
     NoSuchClip(u32),
+    /// The thread does not round to nearest: its [`crate::math::canary`] word. Results would differ from those of
+    /// every other machine.
+    FloatEnvironment(u32),
 }
 
 impl StepError {
@@ -42,6 +45,7 @@ impl StepError {
             Self::JointCount(_) => "STEP_JOINT_COUNT",
             Self::BadJoint(_) => "STEP_BAD_JOINT",
             Self::NoSuchClip(_) => "STEP_NO_SUCH_CLIP",
+            Self::FloatEnvironment(_) => "STEP_FLOAT_ENVIRONMENT",
         }
     }
 }
@@ -56,6 +60,12 @@ impl fmt::Display for StepError {
             }
             Self::BadJoint(i) => write!(f, "the transform of joint {i} is not finite or too large"),
             Self::NoSuchClip(i) => write!(f, "the asset has no clip {i}"),
+            Self::FloatEnvironment(word) => {
+                write!(
+                    f,
+                    "this thread does not round to nearest (canary {word:07b}): restore its float environment"
+                )
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 pub mod asset_bytes;
 pub mod oracle;
 pub mod probe;
+pub mod random;
 pub mod recording;
 pub mod run;
 pub mod special;

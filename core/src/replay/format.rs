@@ -8,7 +8,7 @@ pub const MAGIC: [u8; 4] = *b"SNRP";
 /// The version of the format that this build writes and reads.
 pub const VERSION: u64 = 1;
 /// Number of the arithmetic: raised with every change of the code that changes a bit of a result.
-pub const KERNEL_VERSION: u32 = 2;
+pub const KERNEL_VERSION: u32 = 3;
 /// Bytes of the header.
 pub const HEADER_LEN: usize = 4 + HeaderField::ALL.len() * 12;
 
