@@ -33,10 +33,15 @@ pub enum Error {
         problem: String,
         /// What to do about it.
         remedy: String,
+        /// Code of the runtime's error behind it, or [`Error::UNUSABLE`].
+        code: &'static str,
     },
 }
 
 impl Error {
+    /// Code of a file whose content is not usable, where the runtime has no closer one.
+    pub const UNUSABLE: &'static str = "INPUT_UNUSABLE";
+
     /// An [`Error::Unusable`].
     pub fn unusable(
         file: impl Into<String>,
@@ -49,6 +54,28 @@ impl Error {
             place: place.into(),
             problem: problem.into(),
             remedy: remedy.into(),
+            code: Self::UNUSABLE,
+        }
+    }
+
+    /// The same error with the code of the runtime's error behind it.
+    #[must_use]
+    pub fn coded(self, cause: &'static str) -> Self {
+        match self {
+            Self::Unusable { file, place, problem, remedy, .. } => {
+                Self::Unusable { file, place, problem, remedy, code: cause }
+            }
+            other => other,
+        }
+    }
+
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Read { .. } => "FILE_UNREADABLE",
+            Self::Write { .. } => "FILE_UNWRITABLE",
+            Self::Unusable { code, .. } => code,
         }
     }
 }

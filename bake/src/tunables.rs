@@ -150,6 +150,7 @@ impl Knobs {
                 e.to_string(),
                 "see the ranges in the documentation of Tunables",
             )
+            .coded(e.code())
         })?;
         Ok(t)
     }

@@ -5,10 +5,11 @@ use crate::asset::layout::MAX_REGIONS;
 use crate::kernel::clip::Channels;
 use crate::kernel::skin::{self, Rows};
 use crate::kernel::spring::{Spring, Step};
+use crate::kernel::tiny::{flush, flush_all};
 use crate::kernel::unskin::{self, Limit};
 use crate::life::{Life, Phase};
 use crate::math::affine::{self, Affine};
-use crate::math::{float, noise, quat, vec3};
+use crate::math::{canary, float, noise, vec3};
 use crate::stage::embed::Surface;
 use crate::stage::pose::{Root, Skeleton};
 use crate::stage::skin::Targets;
@@ -19,8 +20,15 @@ use crate::workspace::{LengthError, Workspace};
 
 /// Offsets below this share of the body count as rest.
 const REST: f32 = 1e-7;
-/// Largest entry of a joint's transform. With an asset's largest numbers, cubed and stiff, it stays finite.
+/// Largest entry of a joint's transform.
 const LARGEST_JOINT: f32 = 1e7;
+/// Largest entry of a joint's map from bind space. With an asset's largest numbers and the stiffest springs the
+/// state stays below 1e32 over any time that a character lives.
+const LARGEST_MAP: f32 = 1e9;
+/// A frequency below this, Hz, counts as 0.
+const SLOWEST: f32 = 1e-3;
+/// Bits of the canary's word under which results would differ: rounding, and contraction.
+const ROUNDING: u32 = 0b100_0111;
 /// Time shorter than this, s, waits for the next step.
 const SHORTEST_STEP: f32 = 1e-5;
 
@@ -50,6 +58,8 @@ pub struct Character<'a> {
     /// Weights of the last step, valid for steps of `steps_dt` seconds.
     steps: [Step; MAX_REGIONS],
     steps_dt: f32,
+    /// Canary word of the last step.
+    environment: u32,
 }
 
 impl<'a> Character<'a> {
@@ -89,6 +99,7 @@ impl<'a> Character<'a> {
             limits: [Limit { gain: 1.0, inverse_square: 1.0 }; MAX_REGIONS],
             steps: [Step::new(spring, 1.0, 0.0); MAX_REGIONS],
             steps_dt: 0.0,
+            environment: 0,
         };
         character.apply_tunables();
         Ok(character)
@@ -123,7 +134,7 @@ impl<'a> Character<'a> {
     /// [`TunableError`] for a value out of its range; nothing changes then.
     pub fn set_tunables(&mut self, tunables: &Tunables) -> Result<(), TunableError> {
         tunables.validate()?;
-        self.life.tunables = *tunables;
+        self.life.tunables = tunables.flushed();
         self.apply_tunables();
         Ok(())
     }
@@ -133,7 +144,9 @@ impl<'a> Character<'a> {
         let size = self.asset.meta.body_size;
         for (i, region) in t.regions.iter().enumerate() {
             let frequency = float::min(region.frequency * t.frequency, 60.0);
-            let damping = float::min(region.damping * t.damping, 100.0);
+            // A slower spring would sag beyond all bounds; without stiffness it is free.
+            let frequency = if frequency < SLOWEST { 0.0 } else { frequency };
+            let damping = flush(float::min(region.damping * t.damping, 100.0));
             self.springs[i] = Spring::new(frequency, damping);
             self.limits[i] = region.limit(size, t.gain);
         }
@@ -153,10 +166,7 @@ impl<'a> Character<'a> {
         if expected != found {
             return Err(StepError::JointCount(LengthError { expected, found }));
         }
-        let usable = |m: &Affine| m.as_flattened().iter().all(|x| float::abs(*x) <= LARGEST_JOINT);
-        if let Some(i) = pose.root_from_joint.iter().position(|m| !usable(m)) {
-            return Err(StepError::BadJoint(u32::try_from(i).unwrap_or(u32::MAX)));
-        }
+        check_joints(pose.root_from_joint, self.asset.joint_from_bind)?;
         Ok(self.elapse(dt).map_or(Stepped::Held, |dt| {
             pose::palette(pose.root_from_joint, self.asset.joint_from_bind, self.memory.palette);
             self.advance(pose.root, dt)
@@ -174,18 +184,29 @@ impl<'a> Character<'a> {
         if !t.is_finite() {
             return Err(StepError::TimeNotFinite);
         }
-        Ok(self.sample_and_advance(channels, t, root, dt))
+        self.sample_and_advance(channels, t, root, dt)
     }
 
-    fn sample_and_advance(&mut self, channels: Channels<'_>, t: f32, root: Root, dt: f32) -> Stepped {
-        let Some(dt) = self.elapse(dt) else { return Stepped::Held };
+    fn sample_and_advance(
+        &mut self,
+        channels: Channels<'_>,
+        t: f32,
+        root: Root,
+        dt: f32,
+    ) -> Result<Stepped, StepError> {
+        let (before, t) = ((self.life.pending, self.life.turn), flush(t));
+        let Some(dt) = self.elapse(dt) else { return Ok(Stepped::Held) };
         let asset = &self.asset;
         let skeleton =
             Skeleton { parents: asset.parents, rest: asset.node_rest, joint_node: asset.joint_node };
         let m = &mut self.memory;
         pose::sample(skeleton, channels, t, m.joints, (m.local, m.model));
+        if let Err(error) = check_joints(m.joints, asset.joint_from_bind) {
+            (self.life.pending, self.life.turn) = before;
+            return Err(error);
+        }
         pose::palette(m.joints, asset.joint_from_bind, m.palette);
-        self.advance(root, dt)
+        Ok(self.advance(root, dt))
     }
 
     /// Advances by `dt` seconds in the rest pose of the asset's skeleton.
@@ -195,10 +216,14 @@ impl<'a> Character<'a> {
     /// As [`Self::step`].
     pub fn step_rest(&mut self, root: Root, dt: f32) -> Result<Stepped, StepError> {
         self.check(&root, dt)?;
-        Ok(self.sample_and_advance(Channels::default(), 0.0, root, dt))
+        self.sample_and_advance(Channels::default(), 0.0, root, dt)
     }
 
-    fn check(&self, root: &Root, dt: f32) -> Result<(), StepError> {
+    fn check(&mut self, root: &Root, dt: f32) -> Result<(), StepError> {
+        self.environment = canary::float_environment();
+        if self.environment & ROUNDING != 0 {
+            return Err(StepError::FloatEnvironment(self.environment));
+        }
         if !dt.is_finite() {
             return Err(StepError::TimeNotFinite);
         }
@@ -207,6 +232,7 @@ impl<'a> Character<'a> {
 
     /// Lets `dt` seconds pass; the time to advance by, where a step is due.
     fn elapse(&mut self, dt: f32) -> Option<f32> {
+        let dt = flush(dt);
         if dt <= 0.0 {
             return None;
         }
@@ -219,8 +245,18 @@ impl<'a> Character<'a> {
         Some(core::mem::replace(&mut life.pending, 0.0))
     }
 
+    /// The [`canary`] word of the thread that made the last step: 0 where floats behave as IEEE 754 begins.
+    ///
+    /// A host that flushes subnormals, as audio threads do, shows here (bits 3 to 5) and gets the same bits all the
+    /// same. One that rounds another way gets [`StepError::FloatEnvironment`] instead of a step.
+    #[must_use]
+    pub fn float_environment(&self) -> u32 {
+        self.environment
+    }
+
     /// The stages, in order; the palette is set.
     fn advance(&mut self, root: Root, dt: f32) -> Stepped {
+        let root = root.flushed();
         let forces = self.forces(&root, dt);
         let (asset, m) = (&self.asset, &mut self.memory);
         let active = asset.meta.active as usize;
@@ -249,8 +285,8 @@ impl<'a> Character<'a> {
         let gusts = [0, 1, 2].map(|channel| t.gust * noise::value(life.gust_ticks, channel));
         let strength = float::sqrt(vec3::dot(t.wind, t.wind));
         let wind = [0, 1, 2].map(|i| t.wind[i] * (1.0 + gusts[0]) + strength * 0.5 * gusts[i]);
-        let world = vec3::scale(vec3::add(t.gravity, wind), meta.body_size);
-        let [x, y, z] = quat::to_columns(quat::conjugate(root.rotation));
+        let world = flush_all(vec3::scale(vec3::add(t.gravity, wind), meta.body_size));
+        let [x, y, z] = root.from_world();
         let local = affine::rotate(&[x, y, z, [0.0; 3]], world);
         (local, vec3::scale(meta.bind_down, meta.gravity * meta.body_size))
     }
@@ -334,6 +370,16 @@ impl<'a> Character<'a> {
     #[must_use]
     pub fn digests(&self) -> Digests {
         Digests::of(&self.memory)
+    }
+}
+
+/// Fails at the first joint whose transform, or whose map from bind space, is not finite or too large.
+fn check_joints(root_from_joint: &[Affine], joint_from_bind: &[Affine]) -> Result<(), StepError> {
+    let within = |m: &Affine, most: f32| m.as_flattened().iter().all(|x| float::abs(*x) <= most);
+    let usable = |(a, b)| within(a, LARGEST_JOINT) && within(&affine::mul(a, b), LARGEST_MAP);
+    match root_from_joint.iter().zip(joint_from_bind).position(|pair| !usable(pair)) {
+        None => Ok(()),
+        Some(i) => Err(StepError::BadJoint(u32::try_from(i).unwrap_or(u32::MAX))),
     }
 }
 

@@ -18,8 +18,10 @@
 //!
 //! Same asset, same inputs, same steps: the same bits on every supported target, with or without
 //! SIMD, at any optimization level. Only `+ − × ÷ √` and comparisons in `f32`, and elementary functions
-//! that are correctly rounded for every input ([`math::rounding`]), are used; sums have one written order. The host must round to
-//! nearest and keep subnormals ([`math::canary`] tells). NaN and infinities are refused at the door.
+//! that are correctly rounded for every input ([`math::rounding`]), are used; sums have one written order.
+//! NaN and infinities are refused at the door. A thread that flushes subnormals gets the same bits, for
+//! none of them counts ([`kernel::tiny`]); one that does not round to nearest is refused
+//! ([`Character::float_environment`]).
 #![no_std]
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests compare bits"))]
 

@@ -7,8 +7,9 @@
 //! Little-endian; the digest covers every byte before it.
 
 use crate::character::{Character, surface};
+use crate::kernel::unskin;
 use crate::life::{Life, Phase};
-use crate::math::digest;
+use crate::math::{digest, float};
 use crate::stage::embed;
 use crate::stage::pose::Root;
 use crate::tunables::Tunables;
@@ -18,6 +19,9 @@ const MAGIC: [u8; 4] = *b"SNST";
 const VERSION: u16 = 1;
 /// Bytes before the arrays: header, flags, divisor, turn, pending, ticks, root, tunables.
 pub(crate) const HEAD: usize = 16 + 4 * 4 + 8 + 24 + 16 + 4 * Tunables::WORDS;
+
+/// Largest number of a state that can come of steps (see the limits of a pose).
+const LARGEST: f32 = 1e32;
 
 /// Why bytes are not a state of this character; nothing changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +40,19 @@ pub enum StateError {
     OtherAsset(u64),
     /// The bytes are damaged.
     Damaged,
+}
+
+impl StateError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Length { .. } => "STATE_WRONG_LENGTH",
+            Self::BadHeader => "STATE_BAD_HEADER",
+            Self::OtherAsset(_) => "STATE_OTHER_ASSET",
+            Self::Damaged => "STATE_DAMAGED",
+        }
+    }
 }
 
 impl fmt::Display for StateError {
@@ -172,8 +189,11 @@ impl Character<'_> {
             return Err(StateError::Damaged);
         }
         let life = read_life(&mut r).ok_or(StateError::Damaged)?;
-        let arrays = r.0.as_chunks::<4>().0;
-        if !arrays.iter().all(|x| f32::from_le_bytes(*x).is_finite()) {
+        let (state, offsets) = r.0.split_at(r.0.len() / 6 * 5);
+        let below = |bytes: &[u8], most: f32| {
+            bytes.as_chunks::<4>().0.iter().all(|x| float::abs(f32::from_le_bytes(*x)) <= most)
+        };
+        if !below(state, LARGEST) || !below(offsets, unskin::LARGEST) {
             return Err(StateError::Damaged);
         }
         self.life = life;
@@ -208,7 +228,7 @@ fn read_life(r: &mut Reader<'_>) -> Option<Life> {
     let root = Root { translation, rotation };
     let mut words = [0.0; Tunables::WORDS];
     words.iter_mut().for_each(|w| *w = r.f32());
-    let tunables = Tunables::from_words(&words).ok()?;
+    let tunables = Tunables::from_words(&words).ok()?.flushed();
     let (frozen, teleport) = (flags & 4 != 0, flags & 8 != 0);
     let valid = flags < 16 && turn < divisor && (0.0..=1e9).contains(&pending) && root.is_valid();
     valid.then_some(Life { phase, frozen, teleport, divisor, turn, pending, gust_ticks, root, tunables })

@@ -26,10 +26,28 @@ pub enum StepError {
     BadRoot,
     /// The pose has another number of joints than the asset.
     JointCount(LengthError),
-    /// A joint's transform is not finite or larger than `1e7`.
+    /// A joint's transform is not finite or larger than `1e7`, or with its inverse bind matrix larger than `1e9`.
     BadJoint(u32),
     /// The asset has no such clip.
     NoSuchClip(u32),
+    /// The thread does not round to nearest: its [`crate::math::canary`] word. Results would differ from those of
+    /// every other machine.
+    FloatEnvironment(u32),
+}
+
+impl StepError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::TimeNotFinite => "STEP_TIME_NOT_FINITE",
+            Self::BadRoot => "STEP_BAD_ROOT",
+            Self::JointCount(_) => "STEP_JOINT_COUNT",
+            Self::BadJoint(_) => "STEP_BAD_JOINT",
+            Self::NoSuchClip(_) => "STEP_NO_SUCH_CLIP",
+            Self::FloatEnvironment(_) => "STEP_FLOAT_ENVIRONMENT",
+        }
+    }
 }
 
 impl fmt::Display for StepError {
@@ -42,6 +60,12 @@ impl fmt::Display for StepError {
             }
             Self::BadJoint(i) => write!(f, "the transform of joint {i} is not finite or too large"),
             Self::NoSuchClip(i) => write!(f, "the asset has no clip {i}"),
+            Self::FloatEnvironment(word) => {
+                write!(
+                    f,
+                    "this thread does not round to nearest (canary {word:07b}): restore its float environment"
+                )
+            }
         }
     }
 }

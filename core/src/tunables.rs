@@ -2,19 +2,20 @@
 
 use crate::asset::layout::MAX_REGIONS;
 use crate::kernel::spring::Spring;
+use crate::kernel::tiny::{flush, flush_all};
 use crate::kernel::unskin::Limit;
 use core::fmt;
 
 /// Parameters of a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// Frequency, Hz, `0..=60`.
+    /// Frequency, Hz, `0..=60`; below 0.001 it counts as 0.
     pub frequency: f32,
     /// Damping ratio, `0..=100`; 1 is critical.
     pub damping: f32,
     /// Factor of the offset, `0..=100`.
     pub gain: f32,
-    /// Largest offset, body sizes, above 0, at most 100.
+    /// Largest offset, body sizes, `1e-6..=100`.
     pub max_offset: f32,
 }
 
@@ -41,7 +42,7 @@ impl Region {
     #[must_use]
     pub fn limit(&self, size: f32, gain: f32) -> Limit {
         let longest = self.max_offset * size;
-        Limit { gain: self.gain * gain, inverse_square: 1.0 / (longest * longest) }
+        Limit { gain: flush(self.gain * gain), inverse_square: 1.0 / (longest * longest) }
     }
 }
 
@@ -60,13 +61,13 @@ pub struct Tunables {
     pub inertia: f32,
     /// Factor of all offsets, `0..=100`.
     pub gain: f32,
-    /// Factor of all frequencies, above 0, at most 20.
+    /// Factor of all frequencies, `1e-6..=20`.
     pub frequency: f32,
     /// Factor of all damping ratios, `0..=100`.
     pub damping: f32,
-    /// A step of the root longer than this is a teleport, body sizes.
+    /// A step of the root longer than this is a teleport, body sizes, `1e-6..=1e9`.
     pub teleport: f32,
-    /// A step longer than this settles the flesh, s, above 0, at most 10.
+    /// A step longer than this settles the flesh, s, `1e-6..=10`.
     pub settle_after: f32,
     /// Parameters by region; those past the asset's last are not used.
     pub regions: [Region; MAX_REGIONS],
@@ -99,6 +100,14 @@ pub struct TunableError {
     pub region: Option<u8>,
 }
 
+impl TunableError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        "TUNABLE_OUT_OF_RANGE"
+    }
+}
+
 impl fmt::Display for TunableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.region {
@@ -122,7 +131,6 @@ impl Tunables {
     pub fn validate(&self) -> Result<(), TunableError> {
         let inside = |x: f32, low: f32, high: f32| x >= low && x <= high;
         let vector = |v: [f32; 3]| v.iter().all(|x| inside(*x, -1e4, 1e4));
-        let positive = f32::MIN_POSITIVE;
         let global = [
             ("gravity", vector(self.gravity)),
             ("wind", vector(self.wind)),
@@ -130,10 +138,10 @@ impl Tunables {
             ("gust_rate", inside(self.gust_rate, 0.0, 60.0)),
             ("inertia", inside(self.inertia, 0.0, 1.0)),
             ("gain", inside(self.gain, 0.0, 100.0)),
-            ("frequency", inside(self.frequency, positive, 20.0)),
+            ("frequency", inside(self.frequency, 1e-6, 20.0)),
             ("damping", inside(self.damping, 0.0, 100.0)),
-            ("teleport", inside(self.teleport, positive, 1e9)),
-            ("settle_after", inside(self.settle_after, positive, 10.0)),
+            ("teleport", inside(self.teleport, 1e-6, 1e9)),
+            ("settle_after", inside(self.settle_after, 1e-6, 10.0)),
         ];
         check(&global, None)?;
         for (i, r) in (0..).zip(&self.regions) {
@@ -146,6 +154,23 @@ impl Tunables {
             check(&fields, Some(i))?;
         }
         Ok(())
+    }
+
+    /// The same with numbers that are too small to matter as zero ([`crate::kernel::tiny`]).
+    #[must_use]
+    pub fn flushed(&self) -> Self {
+        let row = |r: &Region| Region::from_row(flush_all([r.frequency, r.damping, r.gain, r.max_offset]));
+        Self {
+            gravity: flush_all(self.gravity),
+            wind: flush_all(self.wind),
+            gust: flush(self.gust),
+            gust_rate: flush(self.gust_rate),
+            inertia: flush(self.inertia),
+            gain: flush(self.gain),
+            damping: flush(self.damping),
+            regions: self.regions.each_ref().map(row),
+            ..*self
+        }
     }
 
     /// As words, for saved states and replays.

@@ -15,6 +15,14 @@ pub struct LengthError {
     pub found: usize,
 }
 
+impl LengthError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        "BUFFER_WRONG_LENGTH"
+    }
+}
+
 impl fmt::Display for LengthError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "buffer has {} elements, {} are needed", self.found, self.expected)

@@ -1,5 +1,6 @@
 //! A small asset written by hand, byte by byte, independent of the baker's writer: a soft tube on three joints.
 
+use core::ops::Range;
 use sinew::asset::content_hash;
 use sinew::asset::layout::{ENTRY_LEN, HASH_OFFSET, HEADER_LEN, MAGIC, Meta, NO_PARENT, Section};
 
@@ -19,7 +20,13 @@ pub const JOINTS: u32 = 3;
 /// The tube as bytes of an asset: 3 joints, 20 points, 12 of them flesh in 2 regions, and the clip `sway` of one second.
 #[must_use]
 pub fn tube() -> Vec<u8> {
-    let meta = Meta {
+    pack(&tube_meta(), tube_section)
+}
+
+/// Counts and constants of [`tube`].
+#[must_use]
+pub fn tube_meta() -> Meta {
+    Meta {
         points: POINTS,
         active: ACTIVE,
         vertices: VERTICES,
@@ -38,8 +45,7 @@ pub fn tube() -> Vec<u8> {
         bind_down: [0.0, -1.0, 0.0],
         gravity: 5.0,
         source: 0x0123_4567_89ab_cdef,
-    };
-    pack(&meta, section)
+    }
 }
 
 /// Bytes on a multiple of four, padded with zeros to whole words.
@@ -56,8 +62,25 @@ pub fn seal(bytes: &mut [u8]) {
     bytes[HASH_OFFSET..HASH_OFFSET + 8].copy_from_slice(&hash.to_le_bytes());
 }
 
-/// Header, table and sections.
-fn pack(meta: &Meta, section: impl Fn(Section, &Meta) -> Vec<u8>) -> Vec<u8> {
+/// Where a section stands in a whole asset.
+///
+/// # Panics
+///
+/// If the bytes end before the section table.
+#[must_use]
+pub fn place_of(bytes: &[u8], section: Section) -> Range<usize> {
+    let at = |entry: usize| {
+        let word = bytes[entry..].first_chunk().expect("the table is there");
+        u32::from_le_bytes(*word) as usize
+    };
+    let index = Section::ALL.iter().position(|s| *s == section).unwrap_or(0);
+    let entry = HEADER_LEN + index * ENTRY_LEN;
+    at(entry + 4)..at(entry + 4) + at(entry + 8)
+}
+
+/// Header, table and sections, whatever they hold: `section` writes each.
+#[must_use]
+pub fn pack(meta: &Meta, section: impl Fn(Section, &Meta) -> Vec<u8>) -> Vec<u8> {
     let start = HEADER_LEN + Section::ALL.len() * ENTRY_LEN;
     let (mut table, mut body) = (Vec::new(), Vec::new());
     for s in Section::ALL {
@@ -86,15 +109,19 @@ fn word(n: usize) -> [u8; 4] {
     u32::try_from(n).unwrap_or(u32::MAX).to_le_bytes()
 }
 
-fn words(words: impl IntoIterator<Item = u32>) -> Vec<u8> {
+/// Little-endian words.
+pub fn words(words: impl IntoIterator<Item = u32>) -> Vec<u8> {
     words.into_iter().flat_map(u32::to_le_bytes).collect()
 }
 
-fn floats(x: impl IntoIterator<Item = f32>) -> Vec<u8> {
+/// Little-endian floats.
+pub fn floats(x: impl IntoIterator<Item = f32>) -> Vec<u8> {
     x.into_iter().flat_map(f32::to_le_bytes).collect()
 }
 
-fn text<const N: usize>(name: &str) -> [u8; N] {
+/// A name, padded with zeros.
+#[must_use]
+pub fn text<const N: usize>(name: &str) -> [u8; N] {
     core::array::from_fn(|i| name.as_bytes().get(i).copied().unwrap_or(0))
 }
 
@@ -152,7 +179,9 @@ fn stencil(vertex: u32) -> [(u32, [f32; 3]); 4] {
     ]
 }
 
-fn section(section: Section, meta: &Meta) -> Vec<u8> {
+/// Bytes of a section of [`tube`].
+#[must_use]
+pub fn tube_section(section: Section, meta: &Meta) -> Vec<u8> {
     let points = 0..POINTS;
     match section {
         Section::Meta => words(meta.to_words()),

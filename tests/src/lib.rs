@@ -2,6 +2,9 @@
 
 pub mod asset_bytes;
 pub mod oracle;
+pub mod probe;
+pub mod random;
 pub mod recording;
 pub mod run;
+pub mod special;
 pub mod tube;

@@ -1,4 +1,5 @@
 import { RawAsset } from '../pkg/sinew.js';
+import { coded } from './error.js';
 import { memory } from './load.js';
 import { bytesOf } from './readable.js';
 
@@ -9,7 +10,7 @@ export let rawOf;
 export function clipIndex(clips, clip) {
   const index = typeof clip === 'string' ? clips.findIndex(({ name }) => name === clip) : clip;
   if (Number.isInteger(index) && index >= 0 && index < clips.length) return index;
-  throw new Error(`the asset has no clip ${typeof clip === 'string' ? `"${clip}"` : clip}`);
+  throw coded('STEP_NO_SUCH_CLIP', `the asset has no clip ${typeof clip === 'string' ? `"${clip}"` : clip}`);
 }
 
 export class Asset {
@@ -26,7 +27,7 @@ export class Asset {
   }
 
   #live() {
-    if (this.#raw === undefined) throw new Error('this Asset was disposed');
+    if (this.#raw === undefined) throw coded('DISPOSED', 'this Asset was disposed');
     return this.#raw;
   }
 

@@ -1,5 +1,6 @@
 import { RawCharacter } from '../pkg/sinew.js';
 import { Asset, clipIndex, rawOf } from './asset.js';
+import { coded } from './error.js';
 import { memory } from './load.js';
 import { bytesOf } from './readable.js';
 import { named, toTunables, writeTunables } from './tunables.js';
@@ -18,14 +19,14 @@ export class Character {
 
   constructor(asset) {
     memory();
-    if (!(asset instanceof Asset)) throw new TypeError('new Character(asset): expected an Asset');
+    if (!(asset instanceof Asset)) throw coded('NOT_AN_ASSET', 'new Character(asset): expected an Asset', TypeError);
     this.#raw = new RawCharacter(rawOf(asset));
     const { jointCount, vertexCount, pointCount, regions, clips, moved } = asset;
     this.#asset = { jointCount, vertexCount, pointCount, regions, clips, moved };
   }
 
   #live() {
-    if (this.#raw === undefined) throw new Error('this Character was disposed');
+    if (this.#raw === undefined) throw coded('DISPOSED', 'this Character was disposed');
     return this.#raw;
   }
 
@@ -124,7 +125,7 @@ export class Character {
     const raw = this.#live();
     const length = raw.state_len();
     const to = out === undefined ? new Uint8Array(length) : bytesOf(out, 'saveState(out)');
-    if (to.length !== length) throw new Error(`state has ${length} bytes, the buffer given ${to.length}`);
+    if (to.length !== length) throw coded('STATE_WRONG_LENGTH', `state has ${length} bytes, the buffer given ${to.length}`);
     const address = raw.save_state();
     to.set(new Uint8Array(memory().buffer, address, length));
     return to;

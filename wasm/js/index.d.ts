@@ -46,9 +46,17 @@ export interface Primitive {
   readonly count: number;
 }
 
+/**
+ * What is thrown: `code` is a stable name for programs, `STEP_BAD_ROOT` or `ASSET_WRONG_HASH`, the same as in Rust;
+ * the text may change.
+ */
+export interface SinewError extends Error {
+  readonly code: string;
+}
+
 /** A baked character. Its bytes are copied into the module's memory, once, and checked. */
 export declare class Asset {
-  /** @throws Error that says what is wrong with the bytes. */
+  /** @throws SinewError that says what is wrong with the bytes. */
   constructor(bytes: Bytes);
   /** Content hash, 16 hexadecimal digits. */
   readonly hash: string;
@@ -148,7 +156,7 @@ export declare class Character {
    * Advances by `dt` seconds to {@link pose} and {@link root}. `dt` ≤ 0 does nothing.
    *
    * @returns true where the buffers are new.
-   * @throws Error for input that is not finite; nothing changes then.
+   * @throws SinewError for input that is not finite; nothing changes then.
    */
   step(dt: number): boolean;
   /** As {@link step}, to the asset's own clip (index or name) at `time`, s. */
@@ -174,7 +182,7 @@ export declare class Character {
    * What is in force. Reading gives a copy; setting an object with some of the fields changes those, and the
    * motion goes on.
    *
-   * @throws Error that names the field out of its range; nothing changes then.
+   * @throws SinewError that names the field out of its range; nothing changes then.
    */
   get tunables(): Tunables;
   set tunables(tunables: SomeTunables);
@@ -216,7 +224,7 @@ export interface Batch {
   /** How many characters advanced: their buffers are new. */
   advanced: number;
   /** Those refused, which are as they were. */
-  refusals: { index: number; error: Error }[];
+  refusals: { index: number; error: SinewError }[];
 }
 
 /**
@@ -243,6 +251,6 @@ export interface Verdict {
 /**
  * Runs a replay again on a new character of `asset`, to the first difference.
  *
- * @throws Error for bytes that are no replay of this asset, or whose inputs are damaged.
+ * @throws SinewError for bytes that are no replay of this asset, or whose inputs are damaged.
  */
 export declare function verify(asset: Asset, replay: Bytes): Verdict;

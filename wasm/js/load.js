@@ -1,5 +1,6 @@
 // Loads the runtime module, once.
 import initGlue, { initSync as initGlueSync } from '../pkg/sinew.js';
+import { coded } from './error.js';
 import { readable } from './readable.js';
 
 // A function that returns i8x16.splat(0): valid only where 128-bit SIMD is.
@@ -37,6 +38,6 @@ export function initSync(module) {
 
 /** The module's memory. Its buffer is another one after it has grown. */
 export function memory() {
-  if (linear === undefined) throw new Error('sinew-wasm is not loaded: call `await init()` first');
+  if (linear === undefined) throw coded('NOT_LOADED', 'sinew-wasm is not loaded: call `await init()` first');
   return linear;
 }

@@ -1,4 +1,5 @@
 // What `WebAssembly.instantiate` takes, from what a person has.
+import { coded } from './error.js';
 
 const addressed = (source) => {
   if (source instanceof URL) return source;
@@ -16,7 +17,7 @@ export async function readable(source) {
     return globalThis.process.getBuiltinModule('node:fs').promises.readFile(address);
   }
   const response = await fetch(address);
-  if (!response.ok) throw new Error(`${response.url}: cannot be loaded: status ${response.status}`);
+  if (!response.ok) throw coded('NOT_LOADED', `${response.url}: cannot be loaded: status ${response.status}`);
   return response;
 }
 
@@ -26,5 +27,5 @@ export function bytesOf(source, what) {
   if (ArrayBuffer.isView(source)) return new Uint8Array(source.buffer, source.byteOffset, source.byteLength);
   if (source instanceof ArrayBuffer) return new Uint8Array(source);
   if (typeof SharedArrayBuffer === 'function' && source instanceof SharedArrayBuffer) return new Uint8Array(source);
-  throw new TypeError(`${what}: expected bytes (a Uint8Array or an ArrayBuffer)`);
+  throw coded('NOT_BYTES', `${what}: expected bytes (a Uint8Array or an ArrayBuffer)`, TypeError);
 }

@@ -1,9 +1,10 @@
 import { RawVerdict } from '../pkg/sinew.js';
 import { Asset, rawOf } from './asset.js';
+import { coded } from './error.js';
 import { bytesOf } from './readable.js';
 
 export function verify(asset, replay) {
-  if (!(asset instanceof Asset)) throw new TypeError('verify(asset, replay): expected an Asset');
+  if (!(asset instanceof Asset)) throw coded('NOT_AN_ASSET', 'verify(asset, replay): expected an Asset', TypeError);
   const raw = RawVerdict.of(rawOf(asset), bytesOf(replay, 'verify(asset, replay)'));
   try {
     const frames = Number(raw.frames());

@@ -1,4 +1,5 @@
 // Tunables cross as a row of words (`Tunables::to_words`); a person sees names.
+import { coded } from './error.js';
 
 const VECTORS = { gravity: 0, wind: 3 };
 const NUMBERS = {
@@ -33,40 +34,40 @@ export function toTunables(words, regionNames) {
 
 /** Writes the fields that `tunables` has over `words`. */
 export function writeTunables(tunables, words, regionNames) {
-  if (tunables === null || typeof tunables !== 'object') throw new TypeError('tunables: expected an object');
+  if (tunables === null || typeof tunables !== 'object') throw coded('TUNABLE_NOT_AN_OBJECT', 'tunables: expected an object', TypeError);
   for (const [key, value] of Object.entries(tunables)) {
     const name = camel(key);
     if (name === 'regions') writeRegions(value, words, regionNames);
     else if (name in VECTORS) words.set(vector(value, name), VECTORS[name]);
     else if (name in NUMBERS) words[NUMBERS[name]] = number(value, name);
-    else throw new Error(`there is no tunable \`${key}\``);
+    else throw coded('TUNABLE_UNKNOWN', `there is no tunable \`${key}\``);
   }
 }
 
 function writeRegions(regions, words, regionNames) {
-  if (!Array.isArray(regions)) throw new TypeError('tunable `regions` is not an array');
+  if (!Array.isArray(regions)) throw coded('TUNABLE_NOT_AN_ARRAY', 'tunable `regions` is not an array', TypeError);
   regions.forEach((region, i) => {
     const index = region.name === undefined ? i : regionNames.indexOf(region.name);
     if (index < 0 || index >= regionNames.length) {
-      throw new Error(`there is no region \`${region.name ?? i}\`: the asset has ${regionNames.join(', ')}`);
+      throw coded('TUNABLE_UNKNOWN', `there is no region \`${region.name ?? i}\`: the asset has ${regionNames.join(', ')}`);
     }
     for (const [key, value] of Object.entries(region)) {
       const field = camel(key);
       if (field === 'name') continue;
-      if (!(field in REGION)) throw new Error(`there is no tunable \`${key}\` of a region`);
+      if (!(field in REGION)) throw coded('TUNABLE_UNKNOWN', `there is no tunable \`${key}\` of a region`);
       words[FIRST_REGION + REGION_WORDS * index + REGION[field]] = number(value, field);
     }
   });
 }
 
 function number(value, name) {
-  if (typeof value !== 'number') throw new TypeError(`tunable \`${name}\` is not a number`);
+  if (typeof value !== 'number') throw coded('TUNABLE_NOT_A_NUMBER', `tunable \`${name}\` is not a number`, TypeError);
   return value;
 }
 
 function vector(value, name) {
   const array = Array.from(value ?? []);
-  if (array.length !== 3) throw new TypeError(`tunable \`${name}\` is not an array of three numbers`);
+  if (array.length !== 3) throw coded('TUNABLE_NOT_AN_ARRAY', `tunable \`${name}\` is not an array of three numbers`, TypeError);
   return array.map((x) => number(x, name));
 }
 

@@ -1,11 +1,12 @@
 //! An asset that owns its bytes.
 
+use crate::error::Thrown;
 use crate::memory::Aligned;
 use js_sys::Uint8Array;
 use self_cell::self_cell;
 use sinew::Asset;
 use std::rc::Rc;
-use wasm_bindgen::prelude::{JsError, wasm_bindgen};
+use wasm_bindgen::prelude::wasm_bindgen;
 
 self_cell! {
     /// Bytes, and the views over them.
@@ -28,7 +29,7 @@ impl RawAsset {
     /// # Errors
     ///
     /// For bytes that are not a whole, undamaged asset of this version, and without memory for them.
-    pub fn parse(bytes: &Uint8Array) -> Result<Self, JsError> {
+    pub fn parse(bytes: &Uint8Array) -> Result<Self, Thrown> {
         let mut owner = Aligned::zeroed(bytes.length() as usize)?;
         bytes.copy_to(owner.bytes_mut());
         Ok(Self(Rc::new(Parsed::try_new(owner, |owner| Asset::parse(owner.bytes()))?)))

@@ -1,12 +1,13 @@
 //! A character that owns its memory.
 
 use crate::asset::{Parsed, RawAsset};
+use crate::error::Thrown;
 use crate::memory::{Aligned, address};
 use self_cell::{MutBorrow, self_cell};
 use sinew::replay::{Event, RecordError, Tape};
 use sinew::{Affine, Character, Pose, Root, Stepped, Tunables};
 use std::rc::Rc;
-use wasm_bindgen::prelude::{JsError, wasm_bindgen};
+use wasm_bindgen::prelude::wasm_bindgen;
 
 struct Owner {
     asset: Rc<Parsed>,
@@ -42,9 +43,9 @@ pub struct RawCharacter {
 }
 
 /// `n` elements, or an error without memory for them.
-fn filled<T: Clone>(n: usize, value: T) -> Result<Vec<T>, JsError> {
+fn filled<T: Clone>(n: usize, value: T) -> Result<Vec<T>, Thrown> {
     let mut out = Vec::new();
-    let full = |_| JsError::new(&format!("out of memory: {n} elements are needed"));
+    let full = |_| Thrown::out_of_memory(&format!("{n} elements"));
     out.try_reserve_exact(n).map_err(full)?;
     out.resize(n, value);
     Ok(out)
@@ -58,7 +59,7 @@ impl RawCharacter {
     ///
     /// Without memory for it.
     #[wasm_bindgen(constructor)]
-    pub fn new(asset: &RawAsset) -> Result<Self, JsError> {
+    pub fn new(asset: &RawAsset) -> Result<Self, Thrown> {
         let asset = Rc::clone(&asset.0);
         let joints = asset.borrow_dependent().joint_from_bind.len();
         let len = Character::required_len(asset.borrow_dependent()) * size_of::<f32>();
@@ -153,12 +154,12 @@ impl RawCharacter {
     /// # Errors
     ///
     /// That.
-    pub fn refusal(&mut self) -> Result<(), JsError> {
+    pub fn refusal(&mut self) -> Result<(), Thrown> {
         let refusal = self.refusal.take();
         self.keep(refusal.map_or(Ok(()), Err))
     }
 
-    fn keep(&mut self, result: Result<(), RecordError>) -> Result<(), JsError> {
+    fn keep(&mut self, result: Result<(), RecordError>) -> Result<(), Thrown> {
         if matches!(result, Err(RecordError::SinkFull)) {
             self.tape = None;
         }
@@ -166,7 +167,7 @@ impl RawCharacter {
     }
 
     /// Does `event`, on the tape where there is one.
-    fn event(&mut self, event: &Event<'_>) -> Result<(), JsError> {
+    fn event(&mut self, event: &Event<'_>) -> Result<(), Thrown> {
         let tape = &mut self.tape;
         let done = self.living.with_dependent_mut(|_, character| match tape {
             Some(tape) => tape.event(character, event),
@@ -193,9 +194,9 @@ impl RawCharacter {
         qz: f32,
         qw: f32,
         dt: f32,
-    ) -> Result<(), JsError> {
+    ) -> Result<(), Thrown> {
         if self.tape.is_some() {
-            return Err(JsError::new("warm up before recording: a replay cannot hold it"));
+            return Err(Thrown::new("RECORDING", "warm up before recording: a replay cannot hold it"));
         }
         let root = Root { translation: [x, y, z], rotation: [qx, qy, qz, qw] };
         self.living.with_dependent_mut(|_, character| character.warm_up(clip, loops, root, dt))?;
@@ -207,7 +208,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// Without memory for the recording.
-    pub fn reset(&mut self) -> Result<(), JsError> {
+    pub fn reset(&mut self) -> Result<(), Thrown> {
         self.event(&Event::Reset)
     }
 
@@ -216,7 +217,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// Without memory for the recording.
-    pub fn settle(&mut self) -> Result<(), JsError> {
+    pub fn settle(&mut self) -> Result<(), Thrown> {
         self.event(&Event::Settle)
     }
 
@@ -225,7 +226,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// Without memory for the recording.
-    pub fn teleport(&mut self) -> Result<(), JsError> {
+    pub fn teleport(&mut self) -> Result<(), Thrown> {
         self.event(&Event::Teleport)
     }
 
@@ -234,7 +235,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// Without memory for the recording.
-    pub fn freeze(&mut self, frozen: bool) -> Result<(), JsError> {
+    pub fn freeze(&mut self, frozen: bool) -> Result<(), Thrown> {
         self.event(&Event::Freeze(frozen))
     }
 
@@ -243,7 +244,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// Without memory for the recording.
-    pub fn set_rate_divisor(&mut self, divisor: u32) -> Result<(), JsError> {
+    pub fn set_rate_divisor(&mut self, divisor: u32) -> Result<(), Thrown> {
         self.event(&Event::Divisor(divisor))
     }
 
@@ -258,8 +259,9 @@ impl RawCharacter {
     /// # Errors
     ///
     /// For a value out of its range; nothing changes then.
-    pub fn set_tunables(&mut self, words: &[f32]) -> Result<(), JsError> {
-        let words = words.try_into().map_err(|_| JsError::new("another number of tunables"))?;
+    pub fn set_tunables(&mut self, words: &[f32]) -> Result<(), Thrown> {
+        let words =
+            words.try_into().map_err(|_| Thrown::new("TUNABLE_COUNT", "another number of tunables"))?;
         let tunables = Tunables::from_words(words)?;
         self.event(&Event::Tunables(tunables))
     }
@@ -275,7 +277,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// Without memory for it.
-    pub fn save_state(&mut self) -> Result<usize, JsError> {
+    pub fn save_state(&mut self) -> Result<usize, Thrown> {
         if self.state.is_empty() {
             self.state = Aligned::zeroed(self.state_len())?;
         }
@@ -288,7 +290,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// As [`Character::load_state`]; nothing changes then.
-    pub fn load_state(&mut self, bytes: &[u8]) -> Result<(), JsError> {
+    pub fn load_state(&mut self, bytes: &[u8]) -> Result<(), Thrown> {
         self.event(&Event::Load(bytes))
     }
 
@@ -297,9 +299,9 @@ impl RawCharacter {
     /// # Errors
     ///
     /// While it is recorded, and without memory for it.
-    pub fn record(&mut self, snapshot_every: u32) -> Result<(), JsError> {
+    pub fn record(&mut self, snapshot_every: u32) -> Result<(), Thrown> {
         if self.tape.is_some() {
-            return Err(JsError::new("already recording: stop that recording first"));
+            return Err(Thrown::new("RECORDING", "already recording: stop that recording first"));
         }
         self.tape = Some(Tape::begin(self.get(), snapshot_every, Vec::new())?);
         Ok(())
@@ -316,8 +318,9 @@ impl RawCharacter {
     /// # Errors
     ///
     /// While it is not recorded, and without memory for the end.
-    pub fn stop_recording(&mut self) -> Result<Vec<u8>, JsError> {
-        let tape = self.tape.take().ok_or_else(|| JsError::new("nothing is being recorded"))?;
+    pub fn stop_recording(&mut self) -> Result<Vec<u8>, Thrown> {
+        let tape =
+            self.tape.take().ok_or_else(|| Thrown::new("NOT_RECORDING", "nothing is being recorded"))?;
         Ok(tape.finish(self.get())?.0)
     }
 
@@ -333,7 +336,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// Without memory for it.
-    pub fn heat(&mut self) -> Result<usize, JsError> {
+    pub fn heat(&mut self) -> Result<usize, Thrown> {
         let character = self.living.borrow_dependent();
         let asset = character.asset();
         if self.heat.is_empty() {
@@ -355,7 +358,7 @@ impl RawCharacter {
     /// # Errors
     ///
     /// Without memory for them.
-    pub fn skin(&mut self, flesh: bool) -> Result<usize, JsError> {
+    pub fn skin(&mut self, flesh: bool) -> Result<usize, Thrown> {
         let character = self.living.borrow_dependent();
         let vertices = character.positions().len();
         if self.skinned.is_empty() {

@@ -8,6 +8,7 @@ pub mod asset;
 #[cfg(feature = "bench")]
 pub mod bench;
 pub mod character;
+mod error;
 mod memory;
 pub mod replay;
 

@@ -1,6 +1,6 @@
 //! Memory on multiples of 16 bytes, which assets and lanes like best.
 
-use wasm_bindgen::JsError;
+use crate::error::Thrown;
 
 /// Zeroed bytes that start on a multiple of 16.
 #[derive(Debug, Default)]
@@ -15,10 +15,10 @@ impl Aligned {
     /// # Errors
     ///
     /// Where the memory cannot grow that far.
-    pub(crate) fn zeroed(len: usize) -> Result<Self, JsError> {
+    pub(crate) fn zeroed(len: usize) -> Result<Self, Thrown> {
         let count = len.div_ceil(size_of::<u128>());
         let mut blocks = Vec::new();
-        let full = |_| JsError::new(&format!("out of memory: {len} bytes are needed"));
+        let full = |_| Thrown::out_of_memory(&format!("{len} bytes"));
         blocks.try_reserve_exact(count).map_err(full)?;
         blocks.resize(count, 0);
         Ok(Self { blocks, len })

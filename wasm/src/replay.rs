@@ -1,10 +1,11 @@
 //! Replays run again.
 
 use crate::asset::RawAsset;
+use crate::error::Thrown;
 use crate::memory::Aligned;
 use sinew::Character;
 use sinew::replay::{Extent, Replay, Verdict, verify};
-use wasm_bindgen::prelude::{JsError, wasm_bindgen};
+use wasm_bindgen::prelude::wasm_bindgen;
 
 /// What verifying a replay found.
 #[wasm_bindgen]
@@ -22,7 +23,7 @@ impl RawVerdict {
     /// # Errors
     ///
     /// For bytes that are not a replay of this asset with undamaged inputs, and without memory.
-    pub fn of(asset: &RawAsset, bytes: &[u8]) -> Result<Self, JsError> {
+    pub fn of(asset: &RawAsset, bytes: &[u8]) -> Result<Self, Thrown> {
         let replay = Replay::parse(bytes)?;
         let asset = *asset.0.borrow_dependent();
         let mut memory = Aligned::zeroed(Character::required_len(&asset) * size_of::<f32>())?;

@@ -37,6 +37,7 @@ pub(super) fn asset(model: &Model, path: Option<&Path>) -> Result<Vec<u32>, Erro
 pub(super) fn parse<'a>(name: &Path, aligned: &'a [u32]) -> Result<Asset<'a>, Error> {
     Asset::parse(bytemuck::cast_slice(aligned)).map_err(|error| {
         Error::unusable(name.display().to_string(), "asset", error.to_string(), "bake the character again")
+            .coded(error.code())
     })
 }
 

@@ -69,7 +69,7 @@ pub(super) fn main() -> ExitCode {
         Err(error) => {
             let reason = one_line(&error);
             eprintln!("sinew: {reason}");
-            (json!({ "error": reason }), Vec::new(), 2)
+            (json!({ "error": reason, "code": error.code() }), Vec::new(), 2)
         }
     };
     let text = if arguments.json { vec![json.to_string()] } else { lines };

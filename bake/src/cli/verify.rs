@@ -27,15 +27,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
     let aligned = pack::align(&load::read(&path)?);
     let asset = load::parse(&path, &aligned)?;
     let mut memory = vec![0.0; Character::required_len(&asset)];
-    let refuse = |problem: String| {
-        Error::unusable(arguments.file.display().to_string(), "replay", problem, "record it again")
+    let refuse = |problem: String, code| {
+        let file = arguments.file.display().to_string();
+        Error::unusable(file, "replay", problem, "record it again").coded(code)
     };
-    let mut character = Character::new(asset, &mut memory).map_err(|e| refuse(e.to_string()))?;
+    let mut character = Character::new(asset, &mut memory).map_err(|e| refuse(e.to_string(), e.code()))?;
     let bar = progress::bar("verify", replay.finished().frames);
     let verdict = verify(&mut character, &replay, Extent::FirstDifference, |done, _| bar.set_position(done));
     bar.finish_and_clear();
     let name = arguments.file.display();
-    Ok(match verdict.map_err(|e| refuse(e.to_string()))? {
+    Ok(match verdict.map_err(|e| refuse(e.to_string(), e.code()))? {
         Verdict::Same { frames } => Outcome {
             json: json!({"replay": arguments.file, "same": true, "frames": frames,
                 "digest": format!("{:016x}", replay.finished().digest)}),
@@ -52,8 +53,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Outcome, Error> {
 }
 
 fn parse<'a>(file: &Path, bytes: &'a [u8]) -> Result<Replay<'a>, Error> {
-    Replay::parse(bytes)
-        .map_err(|e| Error::unusable(file.display().to_string(), "replay", e.to_string(), "record it again"))
+    Replay::parse(bytes).map_err(|e| {
+        let file = file.display().to_string();
+        Error::unusable(file, "replay", e.to_string(), "record it again").coded(e.code())
+    })
 }
 
 /// The asset with the hash `hash` beside `file`.

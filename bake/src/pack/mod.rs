@@ -13,6 +13,7 @@ use glam::{DMat3, DVec3};
 use points::Points;
 use sinew::asset::layout::{MAX_REGIONS, Meta};
 use sinew::asset::{Asset, Section};
+use sinew::kernel::tiny::flush_all;
 use skeleton::Skeleton;
 use writer::{AssetWriter, padded};
 
@@ -154,5 +155,5 @@ fn bind_down(model: &Model, points: &Points) -> [f32; 3] {
     let count = if points.active == 0 { points.of_vertex.len() } else { points.moved().len() };
     #[allow(clippy::cast_precision_loss, reason = "counts are below 2^32")]
     let mean = sum / count.max(1) as f64;
-    mean.to_array().map(narrow)
+    flush_all(mean.to_array().map(narrow))
 }

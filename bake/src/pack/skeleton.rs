@@ -7,6 +7,7 @@ use crate::model::{Interpolation, Property};
 use sinew::Affine;
 use sinew::asset::Section;
 use sinew::asset::layout::NO_PARENT;
+use sinew::kernel::tiny::flush;
 
 /// The skeleton as the asset stores it.
 #[derive(Debug, Default)]
@@ -77,7 +78,7 @@ impl Skeleton {
             self.values.extend(&channel.values);
         }
         let channels = count(self.channels.len()) - first;
-        self.clips.push([first, channels, clip.duration.to_bits(), 0]);
+        self.clips.push([first, channels, flush(clip.duration).to_bits(), 0]);
         self.names.push(padded(&clip.name));
     }
 

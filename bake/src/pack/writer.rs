@@ -3,6 +3,7 @@
 use crate::Error;
 use sinew::asset::Section;
 use sinew::asset::layout::{ALIGNMENT, ENTRY_LEN, HASH_OFFSET, HEADER_LEN, MAGIC, VERSION};
+use sinew::kernel::tiny::flush;
 
 /// Collects the sections of an asset in file order.
 #[derive(Debug, Default)]
@@ -40,9 +41,11 @@ impl AssetWriter {
         self.bytes(section, &bytes);
     }
 
-    /// Adds floats; −0 is written as +0.
+    /// Adds floats; −0 and what is too small to matter is written as +0. Values of clips are flushed where they are
+    /// sampled.
     pub(super) fn floats(&mut self, section: Section, floats: &[f32]) {
-        let bytes: Vec<u8> = floats.iter().flat_map(|x| (x + 0.0).to_le_bytes()).collect();
+        let flush = if section == Section::Values { |x| x } else { flush };
+        let bytes: Vec<u8> = floats.iter().flat_map(|x| (flush(*x) + 0.0).to_le_bytes()).collect();
         self.bytes(section, &bytes);
     }
 

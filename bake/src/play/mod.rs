@@ -143,9 +143,9 @@ impl<'a> Player<'a> {
         let mut character = Character::new(asset, memory)
             .map_err(|e| refuse("memory", e.to_string(), "please report this"))?;
         if let Some(tunables) = &settings.tunables {
-            character
-                .set_tunables(tunables)
-                .map_err(|e| refuse("tunables", e.to_string(), "see the ranges of Tunables"))?;
+            character.set_tunables(tunables).map_err(|e| {
+                refuse("tunables", e.to_string(), "see the ranges of Tunables").coded(e.code())
+            })?;
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 3.6 million")]
         let frames = libm::roundf(seconds * settings.fps).max(1.0) as u32;
@@ -173,9 +173,10 @@ impl<'a> Player<'a> {
         Ok(())
     }
 
-    fn failed(&self, error: impl core::fmt::Display) -> Error {
-        let place = format!("frame {}", self.next);
+    fn failed(&self, error: impl Into<RecordError>) -> Error {
+        let (place, error) = (format!("frame {}", self.next), error.into());
         Error::unusable(self.model.name.as_str(), place, error.to_string(), "check the clip of this file")
+            .coded(error.code())
     }
 
     /// Records from here on.
@@ -195,7 +196,9 @@ impl<'a> Player<'a> {
     ///
     /// [`Error::Unusable`] when nothing was recorded.
     pub fn recorded(&mut self) -> Result<(Vec<u8>, Finished), Error> {
-        let tape = self.tape.take().ok_or_else(|| self.failed("nothing was recorded"))?;
+        let tape = self.tape.take().ok_or_else(|| {
+            Error::unusable(&self.model.name, "replay", "nothing was recorded", "call `record` first")
+        })?;
         tape.finish(&self.character).map_err(|e| self.failed(e))
     }
 

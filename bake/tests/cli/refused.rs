@@ -65,6 +65,15 @@ fn with_json_a_refusal_is_an_object_too() {
     let reason = ran.json()["error"].as_str().expect("a reason").to_owned();
     assert_eq!(ran.err, format!("sinew: {reason}\n"));
     assert!(reason.starts_with("missing.glb: cannot be read"), "{reason}");
+    assert_eq!(ran.json()["code"], "FILE_UNREADABLE");
+    for (file, bytes, code) in [
+        ("a.glb", "this is no model", "INPUT_UNUSABLE"),
+        ("a.sinew", "SINWgarbage", "ASSET_TOO_SHORT"),
+        ("a.replay", "SNRPgarbage", "REPLAY_NO_HEADER"),
+    ] {
+        folder.write(file, bytes);
+        assert_eq!(folder.line(&format!("inspect {file} --json")).json()["code"], code, "{file}");
+    }
 }
 
 #[test]

@@ -52,6 +52,25 @@ pub enum AssetError {
     },
 }
 
+impl AssetError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::TooShort { .. } => "ASSET_TOO_SHORT",
+            Self::BadMagic(_) => "ASSET_BAD_MAGIC",
+            Self::UnsupportedVersion(_) => "ASSET_UNSUPPORTED_VERSION",
+            Self::WrongLength { .. } => "ASSET_WRONG_LENGTH",
+            Self::WrongHash { .. } => "ASSET_WRONG_HASH",
+            Self::Misaligned => "ASSET_MISALIGNED",
+            Self::WrongSection(_) => "ASSET_WRONG_SECTION",
+            Self::WrongExtent(_) => "ASSET_WRONG_EXTENT",
+            Self::NotZero { .. } => "ASSET_NOT_ZERO",
+            Self::Invalid { .. } => "ASSET_INVALID_ENTRY",
+        }
+    }
+}
+
 impl fmt::Display for AssetError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

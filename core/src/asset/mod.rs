@@ -97,10 +97,14 @@ impl<'a> Asset<'a> {
         let meta_bytes = bytes.get(table_end.next_multiple_of(ALIGNMENT)..).unwrap_or_default();
         let words: [u8; META_WORDS * 4] =
             *meta_bytes.first_chunk().ok_or(AssetError::WrongExtent(Section::Meta))?;
-        let meta = Meta::from_words(&core::array::from_fn(|i| {
+        let words = core::array::from_fn(|i| {
             let start = i.saturating_mul(4);
             words.get(start..).and_then(|w| w.first_chunk()).map_or(0, |w| u32::from_le_bytes(*w))
-        }));
+        });
+        let meta = Meta::from_words(&words);
+        if meta.to_words() != words {
+            return Err(AssetError::NotZero { offset: table_end.next_multiple_of(ALIGNMENT) as u64 });
+        }
         let sections = Sections::locate(bytes, &meta)?;
         let asset = Self::view(meta, hash, &sections)?;
         validate::validate(&asset)?;
@@ -174,7 +178,7 @@ fn check_header(bytes: &[u8]) -> Result<u64, AssetError> {
         .first_chunk()
         .ok_or(AssetError::TooShort { expected: HEADER_LEN as u64, found: bytes.len() as u64 })?;
     let [m0, m1, m2, m3, v0, v1, n0, n1, l0, l1, l2, l3, rest @ ..] = *header;
-    let [z0, z1, z2, z3, h0, h1, h2, h3, h4, h5, h6, h7, _tail @ ..] = rest;
+    let [z0, z1, z2, z3, h0, h1, h2, h3, h4, h5, h6, h7, tail @ ..] = rest;
     if [m0, m1, m2, m3] != MAGIC {
         return Err(AssetError::BadMagic([m0, m1, m2, m3]));
     }
@@ -190,6 +194,9 @@ fn check_header(bytes: &[u8]) -> Result<u64, AssetError> {
     let content = content_hash(bytes);
     if hash != content {
         return Err(AssetError::WrongHash { expected: hash, found: content });
+    }
+    if tail != [0; 8] {
+        return Err(AssetError::NotZero { offset: HASH_OFFSET.saturating_add(8) as u64 });
     }
     let sections = usize::from(u16::from_le_bytes([n0, n1]));
     if sections != Section::ALL.len() || [z0, z1, z2, z3] != [0; 4] {

@@ -5,4 +5,5 @@ pub mod normal;
 pub mod skin;
 pub mod spring;
 pub mod target;
+pub mod tiny;
 pub mod unskin;

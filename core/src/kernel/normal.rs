@@ -7,6 +7,7 @@
 //! First order in the slope of the offset field. The tangent vectors `gₖ` and the points `pₖ` are
 //! baked from the triangles around the vertex, so hard edges stay hard.
 
+use super::tiny::flush_all;
 use crate::math::vec3;
 
 /// Tangent stencil of a vertex.
@@ -44,7 +45,7 @@ pub fn turn(
         for (p, g) in points.iter().zip(tangents) {
             turned = vec3::sub(turned, vec3::scale(*g, vec3::dot(offset(*p), n) - own));
         }
-        normals[vertex] = vec3::normalize_or(turned, n);
+        normals[vertex] = vec3::normalize_or(flush_all(turned), n);
     }
 }
 

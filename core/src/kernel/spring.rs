@@ -17,6 +17,7 @@
 //! `e = (X₁ − X₀) − σ₀·h` the curvature is `x̂″·h² = 4e` at the start and `−2e` at the end.
 
 use super::target::Target;
+use super::tiny::flush_all;
 use crate::lanes::{F32x4, Lanes};
 use crate::math::float::{max, min, sqrt};
 use crate::math::psi::{cut, psi_wide};
@@ -132,8 +133,8 @@ impl Step {
         let bend = |w: [f32; 4]| (2.0 * w[3] - 4.0 * w[2]) * inverse * inverse;
         Self {
             dt: [dt, inverse],
-            y: [y[0], y[1], bend(y), y[2], y[3]],
-            u: [u[0], u[1], bend(u), u[2], u[3]],
+            y: flush_all([y[0], y[1], bend(y), y[2], y[3]]),
+            u: flush_all([u[0], u[1], bend(u), u[2], u[3]]),
             rest: [rest, rest * max(sqrt(spring.ks), 1.0)],
         }
     }

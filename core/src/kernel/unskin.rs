@@ -8,8 +8,12 @@
 //! offsets pass unchanged, none grows beyond `w·L`, and there is no kink between.
 
 use super::skin::{Influences, LinearBlock, Rows, linear_of};
+use super::tiny::LEAST;
 use crate::lanes::four::{self, Cofactors, each, three};
 use crate::lanes::{F32x4, Lanes};
+
+/// An offset is shown below this, model units; a component beyond is left out.
+pub const LARGEST: f32 = 1e18;
 
 /// How a region shows its offsets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,10 +55,16 @@ pub fn unskin(
         let dominant = |lane: usize| linear_of(&palette[influences.dominant((i + lane).min(n - 1))]);
         let linear = three(|c| three(|r| F32x4::from_array(linear[c][r])));
         let Cofactors { columns, determinant, regular } = Cofactors::or_else(&linear, dominant);
-        let (zero, one, y) = (F32x4::splat(0.0), F32x4::splat(1.0), four::load(y, i));
+        let [zero, one, least, most] = [0.0, 1.0, LEAST, LARGEST].map(F32x4::splat);
+        let y = four::load(y, i);
         let stretch = (one + four::dot(&y, &y) * inverse_square).sqrt();
         let factor = F32x4::from_array(four::read(softness, i)) * gain / (stretch * determinant);
-        let shown = three(|c| F32x4::select(regular, four::dot(&columns[c], &y) * factor, zero));
+        let shown = three(|c| four::dot(&columns[c], &y) * factor);
+        // A product of numbers as large as are let in may overflow, one of small ones underflow.
+        let shown = three(|c| {
+            let size = shown[c].abs();
+            F32x4::select(regular & size.lt(most) & least.lt(size), shown[c], zero)
+        });
         four::store(shown, out, i);
     }
 }

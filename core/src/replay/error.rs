@@ -102,6 +102,23 @@ pub enum ReplayError {
     OtherDigest(u64),
 }
 
+impl ReplayError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::BadMagic(_) => "REPLAY_BAD_MAGIC",
+            Self::NoHeader => "REPLAY_NO_HEADER",
+            Self::Header(_) => "REPLAY_DAMAGED_HEADER",
+            Self::UnsupportedVersion(_) => "REPLAY_UNSUPPORTED_VERSION",
+            Self::Truncated { .. } => "REPLAY_TRUNCATED",
+            Self::Damaged { .. } => "REPLAY_DAMAGED",
+            Self::OtherAsset { .. } => "REPLAY_OTHER_ASSET",
+            Self::OtherDigest(_) => "REPLAY_OTHER_DIGEST",
+        }
+    }
+}
+
 impl fmt::Display for ReplayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -137,6 +154,19 @@ pub enum RecordError {
     Tunables(TunableError),
     /// The state was refused.
     State(StateError),
+}
+
+impl RecordError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::SinkFull => SinkFull.code(),
+            Self::Step(e) => e.code(),
+            Self::Tunables(e) => e.code(),
+            Self::State(e) => e.code(),
+        }
+    }
 }
 
 impl fmt::Display for RecordError {

@@ -80,6 +80,7 @@ impl Outcome {
             3 => Err(StepError::BadRoot),
             4 => Err(StepError::BadJoint(argument)),
             5 => Err(StepError::NoSuchClip(argument)),
+            7 => Err(StepError::FloatEnvironment(argument)),
             _ => return None,
         })
     }
@@ -116,5 +117,6 @@ fn code(result: Result<Stepped, StepError>) -> [u32; 2] {
         Err(StepError::BadJoint(i)) => [4, i],
         Err(StepError::NoSuchClip(i)) => [5, i],
         Err(StepError::JointCount(_)) => [6, 0],
+        Err(StepError::FloatEnvironment(word)) => [7, word],
     }
 }

@@ -6,6 +6,14 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SinkFull;
 
+impl SinkFull {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        "RECORD_SINK_FULL"
+    }
+}
+
 impl fmt::Display for SinkFull {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "no room left for the recording")

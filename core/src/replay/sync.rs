@@ -31,6 +31,16 @@ pub enum SyncError {
     Restore(StateError),
 }
 
+impl SyncError {
+    /// Stable name of the error, for programs; its text may change, this does not.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::Save(e) | Self::Restore(e) => e.code(),
+        }
+    }
+}
+
 impl fmt::Display for SyncError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -2,6 +2,7 @@
 
 use crate::kernel::clip::{Channels, Property};
 use crate::kernel::skin::Rows;
+use crate::kernel::tiny::{LEAST, flush_all, flush_map};
 use crate::math::affine::{self, Affine};
 use crate::math::{quat, vec3};
 
@@ -30,6 +31,20 @@ impl Root {
         self.translation.iter().all(|x| x.is_finite()) && square > 1e-6 && square < 1e6
     }
 
+    /// The same root with numbers that are too small to matter as zero ([`crate::kernel::tiny`]).
+    #[must_use]
+    pub fn flushed(&self) -> Self {
+        let least = f64::from(LEAST);
+        let flush = |x: f64| if -least < x && x < least { 0.0 } else { x };
+        Self { translation: self.translation.map(flush), rotation: flush_all(self.rotation) }
+    }
+
+    /// The columns of `root_from_world`'s rotation.
+    #[must_use]
+    pub fn from_world(&self) -> [[f32; 3]; 3] {
+        quat::to_columns(quat::conjugate(self.rotation)).map(flush_all)
+    }
+
     /// The old root seen from the new one, of which the share `inertia` (0 to 1) is felt: a rigid map,
     /// or `None` where nothing is to be done.
     #[must_use]
@@ -46,10 +61,10 @@ impl Root {
         };
         #[allow(clippy::cast_possible_truncation, reason = "a difference of positions fits f32")]
         let moved: [f32; 3] = [0, 1, 2].map(|i| (old.translation[i] - new.translation[i]) as f32);
-        let [x, y, z] = quat::to_columns(new_from_world);
-        let back = affine::rotate(&[x, y, z, [0.0; 3]], moved);
+        let [x, y, z] = quat::to_columns(new_from_world).map(flush_all);
+        let back = affine::rotate(&[x, y, z, [0.0; 3]], flush_all(moved));
         let felt = quat::nlerp(quat::IDENTITY, turn, inertia);
-        Some(affine::from_trs(vec3::scale(back, inertia), felt, [1.0; 3]))
+        Some(flush_map(&affine::from_trs(vec3::scale(back, inertia), felt, [1.0; 3])))
     }
 
     /// Distance between two roots, world units.
@@ -71,7 +86,7 @@ pub fn palette(root_from_joint: &[Affine], joint_from_bind: &[Affine], out: &mut
     let n = out.len();
     assert!(root_from_joint.len() == n && joint_from_bind.len() == n, "pose: lengths differ");
     for ((a, b), out) in root_from_joint.iter().zip(joint_from_bind).zip(out) {
-        *out = affine::to_rows(&affine::mul(a, b));
+        *out = affine::to_rows(&flush_map(&affine::mul(a, b)));
     }
 }
 
@@ -105,9 +120,9 @@ pub fn sample(
     for (node, property, keys) in channels.rows.iter().filter_map(|row| channels.channel(row)) {
         let trs = &mut local[node];
         match property {
-            Property::Translation => trs[..3].copy_from_slice(&keys.sample::<3>(t)),
-            Property::Rotation => trs[3..7].copy_from_slice(&keys.sample_rotation(t)),
-            Property::Scale => trs[7..].copy_from_slice(&keys.sample::<3>(t)),
+            Property::Translation => trs[..3].copy_from_slice(&flush_all(keys.sample::<3>(t))),
+            Property::Rotation => trs[3..7].copy_from_slice(&flush_all(keys.sample_rotation(t))),
+            Property::Scale => trs[7..].copy_from_slice(&flush_all(keys.sample::<3>(t))),
         }
     }
     for (i, [tx, ty, tz, qx, qy, qz, qw, sx, sy, sz]) in local.iter().copied().enumerate() {
