@@ -11,6 +11,7 @@ pub mod error;
 pub mod export;
 #[cfg(feature = "render")]
 pub mod film;
+pub mod fit;
 pub mod import;
 pub mod model;
 pub mod pack;

@@ -1,0 +1,3 @@
+//! Learning the springs of flesh from simulated motion.
+
+pub mod sensitivity;
