@@ -1,6 +1,6 @@
 import { RawAsset } from '../pkg/sinew.js';
 import { coded } from './error.js';
-import { memory } from './load.js';
+import { apart, memory } from './load.js';
 import { bytesOf } from './readable.js';
 
 /** The handle of an asset, for the other classes of this package. */
@@ -23,7 +23,7 @@ export class Asset {
 
   constructor(bytes) {
     memory();
-    this.#raw = RawAsset.parse(bytesOf(bytes, 'new Asset(bytes)'));
+    this.#raw = RawAsset.parse(apart(bytesOf(bytes, 'new Asset(bytes)')));
   }
 
   #live() {

@@ -1,7 +1,7 @@
 import { RawCharacter } from '../pkg/sinew.js';
 import { Asset, clipIndex, rawOf } from './asset.js';
 import { coded } from './error.js';
-import { memory } from './load.js';
+import { apart, memory } from './load.js';
 import { bytesOf } from './readable.js';
 import { named, toTunables, writeTunables } from './tunables.js';
 
@@ -67,23 +67,28 @@ export class Character {
     this.#root = { translation, rotation };
   }
 
+  // Numbers are made of what is given before the handle is taken: `valueOf` may do anything, dispose of it too.
   step(dt) {
-    const raw = this.#live();
     const { translation: t, rotation: r } = this.#root;
-    return told(raw, raw.step(t[0], t[1], t[2], r[0], r[1], r[2], r[3], dt));
+    const x = +t[0], y = +t[1], z = +t[2];
+    const a = +r[0], b = +r[1], c = +r[2], d = +r[3], time = +dt;
+    const raw = this.#live();
+    return told(raw, raw.step(x, y, z, a, b, c, d, time));
   }
 
   stepClip(clip, time, dt) {
-    const raw = this.#live();
     const { translation: t, rotation: r } = this.#root;
+    const at = +time, x = +t[0], y = +t[1], z = +t[2];
+    const a = +r[0], b = +r[1], c = +r[2], d = +r[3], by = +dt;
+    const raw = this.#live();
     const index = clipIndex(this.#asset.clips, clip);
-    return told(raw, raw.step_clip(index, time, t[0], t[1], t[2], r[0], r[1], r[2], r[3], dt));
+    return told(raw, raw.step_clip(index, at, x, y, z, a, b, c, d, by));
   }
 
   warmUp(clip, loops, dt) {
-    const raw = this.#live();
     const { translation: t, rotation: r } = this.#root;
-    raw.warm_up(clipIndex(this.#asset.clips, clip), loops, t[0], t[1], t[2], r[0], r[1], r[2], r[3], dt);
+    const numbers = [loops, ...t, ...r, dt].map(Number);
+    this.#live().warm_up(clipIndex(this.#asset.clips, clip), ...numbers);
   }
 
   reset() {
@@ -103,7 +108,8 @@ export class Character {
   }
 
   setRateDivisor(divisor) {
-    this.#live().set_rate_divisor(divisor);
+    const whole = Number(divisor);
+    this.#live().set_rate_divisor(whole);
   }
 
   get tunables() {
@@ -132,11 +138,13 @@ export class Character {
   }
 
   loadState(bytes) {
-    this.#live().load_state(bytesOf(bytes, 'loadState(bytes)'));
+    const state = apart(bytesOf(bytes, 'loadState(bytes)'));
+    this.#live().load_state(state);
   }
 
   record(snapshotEvery = 60) {
-    this.#live().record(snapshotEvery);
+    const every = Number(snapshotEvery);
+    this.#live().record(every);
   }
 
   get recording() {

@@ -36,6 +36,11 @@ export function initSync(module) {
   linear ??= initGlueSync({ module }).memory;
 }
 
+/** `bytes`, copied if they lie in the module's memory: a call that lets it grow would take them away. */
+export function apart(bytes) {
+  return bytes.buffer === memory().buffer ? bytes.slice() : bytes;
+}
+
 /** The module's memory. Its buffer is another one after it has grown. */
 export function memory() {
   if (linear === undefined) throw coded('NOT_LOADED', 'sinew-wasm is not loaded: call `await init()` first');
