@@ -2,7 +2,7 @@
 
 use crate::asset::layout::MAX_REGIONS;
 use crate::kernel::spring::Spring;
-use crate::kernel::tiny::{flush, flush_all};
+use crate::kernel::tiny::flush;
 use crate::kernel::unskin::Limit;
 use core::fmt;
 
@@ -129,48 +129,18 @@ impl Tunables {
     ///
     /// [`TunableError`] names the first field out of its range.
     pub fn validate(&self) -> Result<(), TunableError> {
-        let inside = |x: f32, low: f32, high: f32| x >= low && x <= high;
-        let vector = |v: [f32; 3]| v.iter().all(|x| inside(*x, -1e4, 1e4));
-        let global = [
-            ("gravity", vector(self.gravity)),
-            ("wind", vector(self.wind)),
-            ("gust", inside(self.gust, 0.0, 1.0)),
-            ("gust_rate", inside(self.gust_rate, 0.0, 60.0)),
-            ("inertia", inside(self.inertia, 0.0, 1.0)),
-            ("gain", inside(self.gain, 0.0, 100.0)),
-            ("frequency", inside(self.frequency, 1e-6, 20.0)),
-            ("damping", inside(self.damping, 0.0, 100.0)),
-            ("teleport", inside(self.teleport, 1e-6, 1e9)),
-            ("settle_after", inside(self.settle_after, 1e-6, 10.0)),
-        ];
-        check(&global, None)?;
-        for (i, r) in (0..).zip(&self.regions) {
-            let fields = [
-                ("frequency", inside(r.frequency, 0.0, 60.0)),
-                ("damping", inside(r.damping, 0.0, 100.0)),
-                ("gain", inside(r.gain, 0.0, 100.0)),
-                ("max_offset", inside(r.max_offset, 1e-6, 100.0)),
-            ];
-            check(&fields, Some(i))?;
-        }
-        Ok(())
+        let words = self.to_words();
+        let (global, regions) = words.split_at(GLOBAL.len());
+        check(&GLOBAL, global, None)?;
+        (0..).zip(regions.chunks_exact(REGION.len())).try_for_each(|(i, row)| check(&REGION, row, Some(i)))
     }
 
     /// The same with numbers that are too small to matter as zero ([`crate::kernel::tiny`]).
     #[must_use]
     pub fn flushed(&self) -> Self {
-        let row = |r: &Region| Region::from_row(flush_all([r.frequency, r.damping, r.gain, r.max_offset]));
-        Self {
-            gravity: flush_all(self.gravity),
-            wind: flush_all(self.wind),
-            gust: flush(self.gust),
-            gust_rate: flush(self.gust_rate),
-            inertia: flush(self.inertia),
-            gain: flush(self.gain),
-            damping: flush(self.damping),
-            regions: self.regions.each_ref().map(row),
-            ..*self
-        }
+        let mut words = self.to_words();
+        words.iter_mut().for_each(|word| *word = flush(*word));
+        Self::of_words(&words)
     }
 
     /// As words, for saved states and replays.
@@ -193,11 +163,17 @@ impl Tunables {
     ///
     /// As [`Self::validate`].
     pub fn from_words(w: &[f32; Self::WORDS]) -> Result<Self, TunableError> {
+        let tunables = Self::of_words(w);
+        tunables.validate()?;
+        Ok(tunables)
+    }
+
+    fn of_words(w: &[f32; Self::WORDS]) -> Self {
         let mut regions = [Region::default(); MAX_REGIONS];
         for (r, row) in regions.iter_mut().zip(w[14..].as_chunks::<4>().0) {
             *r = Region::from_row(*row);
         }
-        let tunables = Self {
+        Self {
             gravity: [w[0], w[1], w[2]],
             wind: [w[3], w[4], w[5]],
             gust: w[6],
@@ -209,15 +185,39 @@ impl Tunables {
             teleport: w[12],
             settle_after: w[13],
             regions,
-        };
-        tunables.validate()?;
-        Ok(tunables)
+        }
     }
 }
 
-fn check(fields: &[(&'static str, bool)], region: Option<u8>) -> Result<(), TunableError> {
-    match fields.iter().find(|(_, valid)| !valid) {
-        Some((field, _)) => Err(TunableError { field, region }),
+/// A field: its name and range.
+type Field = (&'static str, f32, f32);
+
+/// The first words of [`Tunables::to_words`].
+const GLOBAL: [Field; 14] = [
+    ("gravity", -1e4, 1e4),
+    ("gravity", -1e4, 1e4),
+    ("gravity", -1e4, 1e4),
+    ("wind", -1e4, 1e4),
+    ("wind", -1e4, 1e4),
+    ("wind", -1e4, 1e4),
+    ("gust", 0.0, 1.0),
+    ("gust_rate", 0.0, 60.0),
+    ("inertia", 0.0, 1.0),
+    ("gain", 0.0, 100.0),
+    ("frequency", 1e-6, 20.0),
+    ("damping", 0.0, 100.0),
+    ("teleport", 1e-6, 1e9),
+    ("settle_after", 1e-6, 10.0),
+];
+
+/// The words of a region.
+const REGION: [Field; 4] =
+    [("frequency", 0.0, 60.0), ("damping", 0.0, 100.0), ("gain", 0.0, 100.0), ("max_offset", 1e-6, 100.0)];
+
+fn check(fields: &[Field], words: &[f32], region: Option<u8>) -> Result<(), TunableError> {
+    let outside = |((_, low, high), word): &(&Field, &f32)| !(*word >= low && *word <= high);
+    match fields.iter().zip(words).find(outside) {
+        Some(((field, ..), _)) => Err(TunableError { field, region }),
         None => Ok(()),
     }
 }

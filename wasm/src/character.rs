@@ -196,7 +196,7 @@ impl RawCharacter {
         dt: f32,
     ) -> Result<(), Thrown> {
         if self.tape.is_some() {
-            return Err(Thrown::new("RECORDING", "warm up before recording: a replay cannot hold it"));
+            return Err(Thrown::new("RECORDING", &"warm up before recording: a replay cannot hold it"));
         }
         let root = Root { translation: [x, y, z], rotation: [qx, qy, qz, qw] };
         self.living.with_dependent_mut(|_, character| character.warm_up(clip, loops, root, dt))?;
@@ -261,7 +261,7 @@ impl RawCharacter {
     /// For a value out of its range; nothing changes then.
     pub fn set_tunables(&mut self, words: &[f32]) -> Result<(), Thrown> {
         let words =
-            words.try_into().map_err(|_| Thrown::new("TUNABLE_COUNT", "another number of tunables"))?;
+            words.try_into().map_err(|_| Thrown::new("TUNABLE_COUNT", &"another number of tunables"))?;
         let tunables = Tunables::from_words(words)?;
         self.event(&Event::Tunables(tunables))
     }
@@ -301,7 +301,7 @@ impl RawCharacter {
     /// While it is recorded, and without memory for it.
     pub fn record(&mut self, snapshot_every: u32) -> Result<(), Thrown> {
         if self.tape.is_some() {
-            return Err(Thrown::new("RECORDING", "already recording: stop that recording first"));
+            return Err(Thrown::new("RECORDING", &"already recording: stop that recording first"));
         }
         self.tape = Some(Tape::begin(self.get(), snapshot_every, Vec::new())?);
         Ok(())
@@ -320,7 +320,7 @@ impl RawCharacter {
     /// While it is not recorded, and without memory for the end.
     pub fn stop_recording(&mut self) -> Result<Vec<u8>, Thrown> {
         let tape =
-            self.tape.take().ok_or_else(|| Thrown::new("NOT_RECORDING", "nothing is being recorded"))?;
+            self.tape.take().ok_or_else(|| Thrown::new("NOT_RECORDING", &"nothing is being recorded"))?;
         Ok(tape.finish(self.get())?.0)
     }
 

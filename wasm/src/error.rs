@@ -1,5 +1,7 @@
 //! What is thrown: an `Error` of JavaScript with the code of the runtime's error.
 
+use core::fmt::Display;
+
 use js_sys::{Error, Reflect};
 use sinew::replay::{RecordError, ReplayError, SinkFull};
 use sinew::{AssetError, LengthError, StateError, StepError, TunableError};
@@ -11,8 +13,8 @@ pub struct Thrown(Error);
 
 impl Thrown {
     /// An error with the stable name `code`.
-    pub(crate) fn new(code: &str, message: &str) -> Self {
-        let error = Error::new(message);
+    pub(crate) fn new(code: &str, message: &dyn Display) -> Self {
+        let error = Error::new(&message.to_string());
         // A new error is an object that takes properties: this cannot fail.
         drop(Reflect::set(&error, &"code".into(), &code.into()));
         Self(error)
@@ -20,7 +22,7 @@ impl Thrown {
 
     /// That there is no memory for `what`.
     pub(crate) fn out_of_memory(what: &str) -> Self {
-        Self::new("OUT_OF_MEMORY", &format!("out of memory: {what} are needed"))
+        Self::new("OUT_OF_MEMORY", &format_args!("out of memory: {what} are needed"))
     }
 }
 
@@ -34,7 +36,7 @@ macro_rules! coded {
     ($($error:ty),*) => {$(
         impl From<$error> for Thrown {
             fn from(error: $error) -> Self {
-                Self::new(error.code(), &error.to_string())
+                Self::new(error.code(), &error)
             }
         }
     )*};

@@ -57,6 +57,6 @@ test('Vite bundles the packed package with every module beside it', async () => 
   const entry = readdirSync(join(project, 'dist/assets')).filter((name) => /^index-.*\.js$/.test(name));
   const module = assets.filter((name) => name.startsWith('sinew_simd_bg'));
   const size = [...entry, ...module].reduce((sum, name) => sum + gzipSync(read(name), { level: 9 }).length, 0);
-  console.log(`runtime as bundled, gzip: ${size} of 62000 bytes`);
-  assert.ok(entry.length === 1 && size <= 62_000, `${size} bytes in ${entry} and ${module}`);
+  console.log(`runtime as bundled, gzip: ${size} of 64000 bytes`);
+  assert.ok(entry.length === 1 && size <= 64_000, `${size} bytes in ${entry} and ${module}`);
 });

@@ -52,8 +52,7 @@ impl SensitiveStep {
         let (a, b) = (kd * h, ks * h * h);
         let ([p0, p1, p2, p3, _], [t, t0, t1, t2, t3]) = psi_theta_wide(a, b);
         let (c, hh) = (b / h, h * h);
-        let weights =
-            [[1.0 - b * p2, h * p1, hh * (p2 - p3), hh * p3], [-c * p1, p0, h * (p1 - p2), h * p2]];
+        let weights = [[1.0 - b * p2, h * p1, hh * (p2 - p3), hh * p3], [-c * p1, p0, h * (p1 - p2), h * p2]];
         let by_b = [
             [b * t2 - p2, -h * t1, hh * (t3 - t2), -hh * t3],
             [c * t1 - p1 / h, -t0, h * (t2 - t1), -h * t2],
@@ -67,7 +66,8 @@ impl SensitiveStep {
     #[must_use]
     pub fn advance(&self, from: &Sensitive, alpha: [f64; 2]) -> Sensitive {
         let at = [from.state[0], from.state[1], alpha[0], alpha[1]];
-        let apply = |w: &Weights, v: [f64; 4]| w.map(|row| row.iter().zip(v).map(|(w, v)| w * v).sum::<f64>());
+        let apply =
+            |w: &Weights, v: [f64; 4]| w.map(|row| row.iter().zip(v).map(|(w, v)| w * v).sum::<f64>());
         let carried = |d: [f64; 2], w: &Weights| {
             let (through, own) = (apply(&self.weights, [d[0], d[1], 0.0, 0.0]), apply(w, at));
             [through[0] + own[0], through[1] + own[1]]

@@ -23,10 +23,10 @@ pub fn flush(x: f32) -> f32 {
 }
 
 /// [`flush`] of each component.
-#[inline(always)]
 #[must_use]
-pub fn flush_all<const N: usize>(x: [f32; N]) -> [f32; N] {
-    x.map(flush)
+pub fn flush_all<const N: usize>(mut x: [f32; N]) -> [f32; N] {
+    x.iter_mut().for_each(|x| *x = flush(*x));
+    x
 }
 
 /// [`flush`] of each entry.

@@ -103,14 +103,12 @@ pub(crate) fn overdamped<W: Wide>(b: W, half: W, root: W) -> [W; 5] {
     let (l1, l2) = (-(b / far), -far);
     let (f1, f2) = (phi_wide(l1), phi_wide(l2));
     let over = W::new(0.5) / root;
-    let difference = |x: W, y: W| (x - y) * over;
-    [
-        difference(l1 * f1[0], l2 * f2[0]),
-        difference(f1[0], f2[0]),
-        difference(f1[1], f2[1]),
-        difference(f1[2], f2[2]),
-        difference(f1[3], f2[3]),
-    ]
+    let (x, y) = ([l1 * f1[0], f1[0], f1[1], f1[2], f1[3]], [l2 * f2[0], f2[0], f2[1], f2[2], f2[3]]);
+    let mut out = x;
+    for (out, y) in out.iter_mut().zip(y) {
+        *out = (*out - y) * over;
+    }
+    out
 }
 
 /// The recurrence from far up, where `Ψₖ` is nearly `1/k!`.

@@ -53,7 +53,7 @@ impl Twin {
 
 impl Add for Twin {
     type Output = Self;
-    #[inline]
+    #[cfg_attr(target_arch = "wasm32", inline(never))] // size counts
     fn add(self, b: Self) -> Self {
         let (s, t) = (sum(self.hi, b.hi), sum(self.lo, b.lo));
         let v = quick_sum(s.hi, s.lo + t.hi);
@@ -79,7 +79,7 @@ impl Sub for Twin {
 
 impl Mul for Twin {
     type Output = Self;
-    #[inline]
+    #[cfg_attr(target_arch = "wasm32", inline(never))] // size counts
     fn mul(self, b: Self) -> Self {
         let p = product(self.hi, b.hi);
         quick_sum(p.hi, p.lo + (self.hi * b.lo + self.lo * b.hi))
@@ -88,7 +88,7 @@ impl Mul for Twin {
 
 impl Div for Twin {
     type Output = Self;
-    #[inline]
+    #[cfg_attr(target_arch = "wasm32", inline(never))] // size counts
     fn div(self, b: Self) -> Self {
         let q = self.hi / b.hi;
         let p = product(q, b.hi);
@@ -125,7 +125,7 @@ impl Wide for Twin {
         self.hi
     }
 
-    #[inline]
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
     fn sqrt(self) -> Self {
         if self.hi <= 0.0 {
             return Self::new(0.0);
