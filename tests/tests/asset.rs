@@ -35,6 +35,24 @@ fn run(asset: Asset<'_>) -> Option<f32> {
 }
 
 #[test]
+fn a_copy_may_lie_anywhere() {
+    let bytes = tube();
+    let words = aligned(&bytes);
+    let there = parse(&words, bytes.len()).expect("a valid asset");
+    for shift in 0..4 {
+        let shifted = [&vec![0xAA; shift][..], &bytes].concat();
+        let mut buffer = vec![0; bytes.len().div_ceil(4) + shift];
+        let here = Asset::parse_into(&shifted[shift..], &mut buffer).expect("a valid asset");
+        assert_eq!((here.hash, here.rest, here.regions), (there.hash, there.rest, there.regions));
+        assert_eq!(run(here), run(there), "{shift} bytes off");
+        let mut short = vec![0; bytes.len().div_ceil(4) - 1];
+        let refused = Asset::parse_into(&shifted[shift..], &mut short).map(|asset| asset.hash);
+        let (expected, found) = (bytes.len() as u64, short.len() as u64 * 4);
+        assert_eq!(refused, Err(AssetError::TooShort { expected, found }));
+    }
+}
+
+#[test]
 fn every_truncation_is_an_error() {
     let bytes = tube();
     let words = aligned(&bytes);

@@ -89,7 +89,10 @@ impl fmt::Display for AssetError {
             Self::WrongHash { expected, found } => {
                 write!(f, "asset is damaged: content hash {found:016x}, header says {expected:016x}")
             }
-            Self::Misaligned => write!(f, "asset bytes must start on a multiple of 4"),
+            Self::Misaligned if cfg!(target_endian = "big") => {
+                f.write_str("a big-endian machine needs `parse_into`")
+            }
+            Self::Misaligned => f.write_str("asset bytes must start on a multiple of 4"),
             Self::WrongSection(section) => write!(f, "section {section} is missing or out of order"),
             Self::WrongExtent(section) => write!(f, "section {section} has a wrong place or length"),
             Self::NotZero { offset } => write!(f, "byte {offset} must be zero"),

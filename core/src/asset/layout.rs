@@ -51,6 +51,18 @@ macro_rules! sections {
     };
 }
 
+impl Section {
+    /// Bytes of a number in the section; 1 for text.
+    #[must_use]
+    pub const fn width(self) -> usize {
+        match self {
+            Self::RegionOfPoint | Self::RegionNames | Self::ClipNames => 1,
+            Self::InfluenceJoints => 2,
+            _ => 4,
+        }
+    }
+}
+
 sections! {
     /// Counts and constants, `META_WORDS` words.
     Meta b"META" |_| 1, 128;

@@ -86,27 +86,41 @@ fn text(bytes: &[u8]) -> &str {
 }
 
 impl<'a> Asset<'a> {
-    /// Reads and checks an asset.
+    /// Reads and checks an asset where it lies, on a multiple of 4 bytes.
     ///
     /// # Errors
     ///
-    /// [`AssetError`] for bytes that are not a whole, undamaged asset of this version.
+    /// [`AssetError`] for bytes that are not a whole, undamaged asset of this version;
+    /// [`AssetError::Misaligned`] always on a big-endian machine, where [`Self::parse_into`] reads it.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, AssetError> {
-        let hash = check_header(bytes)?;
-        let table_end = HEADER_LEN.saturating_add(Section::ALL.len().saturating_mul(ENTRY_LEN));
-        let meta_bytes = bytes.get(table_end.next_multiple_of(ALIGNMENT)..).unwrap_or_default();
-        let words: [u8; META_WORDS * 4] =
-            *meta_bytes.first_chunk().ok_or(AssetError::WrongExtent(Section::Meta))?;
-        let words = core::array::from_fn(|i| {
-            let start = i.saturating_mul(4);
-            words.get(start..).and_then(|w| w.first_chunk()).map_or(0, |w| u32::from_le_bytes(*w))
-        });
-        let meta = Meta::from_words(&words);
-        if meta.to_words() != words {
-            return Err(AssetError::NotZero { offset: table_end.next_multiple_of(ALIGNMENT) as u64 });
+        let (hash, meta) = check(bytes)?;
+        if cfg!(target_endian = "big") {
+            return Err(AssetError::Misaligned);
         }
-        let sections = Sections::locate(bytes, &meta)?;
-        let asset = Self::view(meta, hash, &sections)?;
+        Self::of_sections(meta, hash, bytes)
+    }
+
+    /// Reads and checks an asset that lies anywhere, on a machine of any byte order: `buffer` takes a copy.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::parse`]; [`AssetError::TooShort`] if `buffer` has fewer than `bytes.len() / 4` words, rounded up.
+    pub fn parse_into(bytes: &[u8], buffer: &'a mut [u32]) -> Result<Self, AssetError> {
+        let (hash, meta) = check(bytes)?;
+        let (expected, found) = (bytes.len() as u64, (buffer.len() as u64).saturating_mul(4));
+        let copy: &mut [u8] = bytemuck::cast_slice_mut(buffer);
+        let copy = copy.get_mut(..bytes.len()).ok_or(AssetError::TooShort { expected, found })?;
+        copy.copy_from_slice(bytes);
+        if cfg!(target_endian = "big") {
+            Sections::locate(bytes, &meta)?;
+            swap_sections(copy, &meta);
+        }
+        Self::of_sections(meta, hash, copy)
+    }
+
+    /// Views of sections in this machine's byte order.
+    fn of_sections(meta: Meta, hash: u64, bytes: &'a [u8]) -> Result<Self, AssetError> {
+        let asset = Self::view(meta, hash, &Sections::locate(bytes, &meta)?)?;
         validate::validate(&asset)?;
         Ok(asset)
     }
@@ -172,6 +186,42 @@ impl<'a> Asset<'a> {
     }
 }
 
+/// Header and counts.
+fn check(bytes: &[u8]) -> Result<(u64, Meta), AssetError> {
+    let hash = check_header(bytes)?;
+    let start = TABLE_END.next_multiple_of(ALIGNMENT);
+    let meta_bytes = bytes.get(start..).unwrap_or_default();
+    let words: [u8; META_WORDS * 4] =
+        *meta_bytes.first_chunk().ok_or(AssetError::WrongExtent(Section::Meta))?;
+    let words = core::array::from_fn(|i| {
+        let start = i.saturating_mul(4);
+        words.get(start..).and_then(|w| w.first_chunk()).map_or(0, |w| u32::from_le_bytes(*w))
+    });
+    let meta = Meta::from_words(&words);
+    if meta.to_words() != words {
+        return Err(AssetError::NotZero { offset: start as u64 });
+    }
+    Ok((hash, meta))
+}
+
+/// Reverses the bytes of every number in the sections of a located asset.
+fn swap_sections(bytes: &mut [u8], meta: &Meta) {
+    let mut rest = bytes.get_mut(TABLE_END..).unwrap_or_default();
+    let mut at = TABLE_END;
+    for section in Section::ALL {
+        let start = at.next_multiple_of(ALIGNMENT);
+        let len = usize::try_from(section.byte_len(meta)).unwrap_or(usize::MAX);
+        let (Some(gap), end) = (start.checked_sub(at), start.saturating_add(len)) else { return };
+        let Some((_, tail)) = rest.split_at_mut_checked(gap) else { return };
+        let Some((content, tail)) = tail.split_at_mut_checked(len) else { return };
+        content.chunks_exact_mut(section.width()).for_each(<[u8]>::reverse);
+        (rest, at) = (tail, end);
+    }
+}
+
+/// Where the table ends.
+const TABLE_END: usize = HEADER_LEN + Section::ALL.len() * ENTRY_LEN;
+
 /// Magic, version, lengths, hash.
 fn check_header(bytes: &[u8]) -> Result<u64, AssetError> {
     let header: &[u8; HEADER_LEN] = bytes
@@ -222,7 +272,7 @@ impl<'a> Sections<'a> {
     fn locate(bytes: &'a [u8], meta: &Meta) -> Result<Self, AssetError> {
         let mut sections = [&[][..]; Section::ALL.len()];
         let table = bytes.get(HEADER_LEN..).unwrap_or_default();
-        let mut end = HEADER_LEN.saturating_add(Section::ALL.len().saturating_mul(ENTRY_LEN)) as u64;
+        let mut end = TABLE_END as u64;
         let slots = sections.iter_mut().zip(Section::ALL).zip(table.chunks_exact(ENTRY_LEN));
         for ((slot, section), entry) in slots {
             let [t0, t1, t2, t3, o0, o1, o2, o3, l0, l1, l2, l3, zero @ ..] =
