@@ -52,7 +52,7 @@ fn a_frame_allocates_nothing() {
             c.step_rest(root, dt).expect("a valid frame");
             assert!(c.step(Pose { root, root_from_joint: joints }, f32::NAN).is_err(), "refused");
             assert!(c.step(Pose { root, root_from_joint: &joints[1..] }, dt).is_err(), "refused");
-            core::hint::black_box(c.digests());
+            core::hint::black_box((c.digests(), c.float_environment()));
             core::hint::black_box((c.positions(), c.normals(), c.offsets(), c.raw_offsets(), c.palette()));
         }
         c.warm_up(0, 2, Root::default(), DT).expect("a valid clip");

@@ -121,7 +121,7 @@ proptest! {
         let weights = WEIGHTS.repeat(N);
         let surface = |palette: &[Rows]| {
             let influences = Influences { stride: 4, joints: &joints, weights: &weights };
-            let of: Vec<u32> = (0..N as u32).collect();
+            let of: Vec<u32> = (0_u32..).take(N).collect();
             let (mut positions, mut normals) = (rest.clone(), vec![[0.6, 0.0, 0.8]; N]);
             skin_surface(palette, influences, &of, &mut positions, &mut normals);
             (positions, normals)
