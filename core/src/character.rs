@@ -112,7 +112,7 @@ impl<'a> Character<'a> {
         for (region, row) in tunables.regions.iter_mut().zip(asset.regions) {
             *region = Region::from_row(*row);
         }
-        tunables
+        tunables.flushed()
     }
 
     /// The asset.

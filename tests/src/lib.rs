@@ -1,6 +1,7 @@
 //! What the tests of sinew share: small characters, handmade bytes, oracles, comparisons.
 
 pub mod asset_bytes;
+pub mod fuzz;
 pub mod oracle;
 pub mod probe;
 pub mod random;

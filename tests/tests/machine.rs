@@ -151,18 +151,28 @@ fn act(c: &mut Character<'_>, call: &Call, slots: &[Vec<u8>; 2], batched: bool) 
             let state = forged(&slots[0], *at, *by, *sealed);
             c.load_state(&state).map(|()| None).map_err(|e| e.code())
         }
-        Call::Freeze(frozen) => done(c.freeze(*frozen)),
-        Call::Divisor(divisor) => done(c.set_rate_divisor(*divisor)),
-        Call::Teleport => done(c.teleport()),
-        Call::Settle => done(c.settle()),
-        Call::Reset => done(c.reset()),
+        Call::Freeze(frozen) => {
+            c.freeze(*frozen);
+            Ok(None)
+        }
+        Call::Divisor(divisor) => {
+            c.set_rate_divisor(*divisor);
+            Ok(None)
+        }
+        Call::Teleport => {
+            c.teleport();
+            Ok(None)
+        }
+        Call::Settle => {
+            c.settle();
+            Ok(None)
+        }
+        Call::Reset => {
+            c.reset();
+            Ok(None)
+        }
         Call::Save(_) | Call::Follow => Ok(None),
     }
-}
-
-/// A call that cannot be refused.
-fn done((): ()) -> Came {
-    Ok(None)
 }
 
 fn shown(c: &Character<'_>) -> Vec<u32> {

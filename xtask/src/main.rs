@@ -7,6 +7,8 @@ mod clean;
 mod count;
 mod demo;
 mod exhaustive;
+mod fuzz;
+mod nightly;
 mod npm;
 mod page;
 mod process;
@@ -74,6 +76,17 @@ enum Chore {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
+    /// Look for inputs that break a promise, by libFuzzer where it can be had.
+    Fuzz {
+        /// Time for each target, s.
+        #[arg(long, default_value_t = 60)]
+        seconds: u64,
+        /// Write the seeds that the search begins with anew, and search nothing.
+        #[arg(long)]
+        seeds: bool,
+        /// One target instead of all.
+        target: Option<String>,
+    },
     /// Remove what chores made.
     Clean,
 }
@@ -100,6 +113,8 @@ fn run(chore: Chore) -> Result<bool> {
         Chore::Wasm => wasm::run(),
         Chore::Serve { port } => page::serve(port),
         Chore::Bench { arguments } => demo::bench(&arguments),
+        Chore::Fuzz { seeds: true, .. } => fuzz::seeds(),
+        Chore::Fuzz { seconds, target, .. } => fuzz::run(seconds, target.as_deref()),
         Chore::Clean => clean::run(),
     };
     result.map(|()| true)

@@ -8,10 +8,18 @@ use anyhow::{Result, bail};
 use crate::count::Count;
 use crate::report::Step;
 use crate::toolchain::Toolchain;
-use crate::{cache, exhaustive, npm, page, process, report, wasm, workspace};
+use crate::{cache, exhaustive, fuzz, nightly, npm, page, process, report, wasm, workspace};
 
 /// A microcontroller without an operating system: what compiles for it needs no `std`.
 const BARE_METAL: &str = "thumbv7em-none-eabihf";
+
+/// Time for each of the fuzzer's targets.
+const FUZZ_SECONDS: u64 = 10;
+/// What Miri runs of the runtime's own tests. `math` is left out: sweeps of thousands of evaluations, without a line
+/// that touches memory by other means than the language.
+const UNDER_MIRI: [&str; 6] = ["asset::", "kernel::", "lanes::", "replay::tests", "state::", "tunables::"];
+/// Tests among them that take Miri over a quarter of a minute and show it nothing new.
+const SLOW_UNDER_MIRI: [&str; 4] = ["gravity_sags", "exhaustive", "every_", "whole_domain"];
 
 /// How a check ended that could be run.
 enum Outcome {
@@ -29,7 +37,7 @@ struct Check {
     run: fn(&str) -> Result<Outcome>,
 }
 
-const CHECKS: [Check; 13] = [
+const CHECKS: [Check; 15] = [
     Check { name: "format", run: |name| cargo(name, &["fmt", "--all", "--check"], &[]) },
     Check { name: "clippy", run: clippy },
     Check { name: "rustdoc", run: rustdoc },
@@ -39,6 +47,8 @@ const CHECKS: [Check; 13] = [
     Check { name: "golden tests, native CPU", run: tests_native },
     Check { name: "accuracy, strided", run: accuracy },
     Check { name: "no_std on bare metal", run: bare_metal },
+    Check { name: "fuzzing, briefly", run: |_| done(fuzz::run(FUZZ_SECONDS, None)) },
+    Check { name: "core under Miri", run: miri },
     Check { name: "wasm package", run: |_| done(wasm::run()) },
     Check { name: "npm tests", run: npm_tests },
     Check { name: "page bundle", run: |_| done(page::build()) },
@@ -178,6 +188,17 @@ fn bare_metal(name: &str) -> Result<Outcome> {
         }
         Err(error) => Ok(Outcome::Skipped(format!("{error:#}"))),
     }
+}
+
+/// The runtime's own tests in an interpreter that sees undefined behavior, also in the crates it uses.
+fn miri(name: &str) -> Result<Outcome> {
+    if !nightly::has_miri() {
+        return Ok(Outcome::Skipped("Miri cannot be had here".to_owned()));
+    }
+    let mut miri =
+        nightly::cargo(&["miri", "test", "--package", "sinew", "--features", "std", "--lib", "--"]);
+    miri.args(UNDER_MIRI).args(SLOW_UNDER_MIRI.iter().flat_map(|test| ["--skip", test]));
+    program(name, miri.env("MIRIFLAGS", "-Zmiri-strict-provenance"))
 }
 
 fn npm_tests(name: &str) -> Result<Outcome> {

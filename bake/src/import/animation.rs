@@ -1,5 +1,6 @@
 //! Animation clips.
 
+use sinew::kernel::tiny::flush;
 use std::collections::BTreeSet;
 
 use glam::DQuat;
@@ -73,6 +74,8 @@ fn channel(
     if !times.iter().chain(&values).all(|x| x.is_finite()) {
         return Err(source.error(place, "a key is not finite", "repair the clip where it was made"));
     }
+    // As the asset holds them: keys that are told apart here must be there.
+    let times: Vec<f32> = times.into_iter().map(flush).collect();
     let (times, mut values) = ascending(&times, &values, per_key);
     if property == Property::Rotation && interpolation != Interpolation::CubicSpline {
         values.as_chunks_mut().0.iter_mut().for_each(normalize);

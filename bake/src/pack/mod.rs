@@ -7,12 +7,12 @@ mod skeleton;
 mod stencils;
 mod writer;
 
-use crate::recipe::Flesh;
+use crate::recipe::{Flesh, Region};
 use crate::{Error, Model};
 use glam::{DMat3, DVec3};
 use points::Points;
 use sinew::asset::layout::{MAX_REGIONS, Meta};
-use sinew::asset::{Asset, Section};
+use sinew::asset::{Asset, AssetError, Section};
 use sinew::kernel::tiny::flush_all;
 use skeleton::Skeleton;
 use writer::{AssetWriter, padded};
@@ -86,15 +86,32 @@ pub(crate) fn narrow(x: f64) -> f32 {
 /// Reads the asset back: what is written can be read.
 fn check(name: &str, bytes: &[u8]) -> Result<(), Error> {
     let aligned = align(bytes);
-    match Asset::parse(bytemuck::cast_slice(&aligned)) {
-        Ok(_) => Ok(()),
-        Err(error) => Err(Error::unusable(
-            name,
-            "packing",
-            format!("the model does not fit the asset format: {error}"),
-            "please report this file",
-        )),
-    }
+    Asset::parse(bytemuck::cast_slice(&aligned)).map(|_| ()).map_err(|error| misfit(name, error))
+}
+
+/// Why a model does not fit the format, in words of the model where its own numbers are too large.
+fn misfit(name: &str, error: AssetError) -> Error {
+    let what = match error {
+        AssetError::Invalid { section: Section::Meta, .. } => "the size of the whole",
+        AssetError::Invalid { section: Section::Rest, .. } => "a position",
+        AssetError::Invalid { section: Section::JointFromBind, .. } => "an inverse bind matrix",
+        AssetError::Invalid { section: Section::NodeRest, .. } => "the transform of a node",
+        AssetError::Invalid { section: Section::StencilTangents, .. } => "the bend of the surface",
+        AssetError::Invalid { section: Section::Times | Section::Clips, .. } => "the time of a key",
+        AssetError::Invalid { section: Section::Values, .. } => "the value of a key",
+        other => {
+            let problem = format!("the model does not fit the asset format: {other}");
+            return Error::unusable(name, "packing", problem, "please report this file").coded(other.code());
+        }
+    };
+    let problem = format!("{what} is beyond what the runtime takes ({error})");
+    Error::unusable(
+        name,
+        "packing",
+        problem,
+        "apply the model's scale, or remove what is far away or very small",
+    )
+    .coded(error.code())
 }
 
 /// Bytes in memory aligned for [`Asset::parse`]: cast the result back with `bytemuck::cast_slice`.
@@ -113,8 +130,17 @@ pub fn align(bytes: &[u8]) -> Vec<u32> {
 }
 
 fn write_regions(w: &mut AssetWriter, flesh: &Flesh) {
-    let mut rows: Vec<[f32; 4]> =
-        flesh.regions.iter().map(|r| [r.frequency, r.damping, r.gain, r.max_offset]).collect();
+    // A recipe multiplies: to zero, or beyond what the runtime takes.
+    let row = |r: &Region| {
+        let most = |x: f32, most: f32| x.clamp(0.0, most);
+        [
+            most(r.frequency, 60.0),
+            most(r.damping, 100.0),
+            most(r.gain, 100.0),
+            r.max_offset.clamp(1e-6, 100.0),
+        ]
+    };
+    let mut rows: Vec<[f32; 4]> = flesh.regions.iter().map(row).collect();
     let mut names: Vec<[u8; 16]> = flesh.regions.iter().map(|r| padded(&r.name)).collect();
     if rows.is_empty() {
         (rows, names) = (vec![[3.0, 0.3, 1.0, 0.1]], vec![padded("none")]);
