@@ -2,6 +2,7 @@
 
 pub mod asset_bytes;
 pub mod fuzz;
+pub mod golden;
 pub mod oracle;
 pub mod probe;
 pub mod random;

@@ -1,11 +1,11 @@
-// One hash on every target: the constants of tests/tests/golden.rs, baked, played and verified under wasm.
+// One hash on every target: the constants of tests/target/src/golden.rs, baked, played and verified under wasm.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 
-const source = readFileSync(new URL('../../tests/tests/golden.rs', import.meta.url), 'utf8');
-const constant = (name) => source.match(new RegExp(`const ${name}: u64 = 0x([0-9a-f_]+);`))[1].replaceAll('_', '');
+const source = readFileSync(new URL('../../tests/target/src/golden.rs', import.meta.url), 'utf8');
+const constant = (name) => source.match(new RegExp(`pub const ${name}: u64 = 0x([0-9a-f_]+);`))[1].replaceAll('_', '');
 
 /** The frames of golden.rs: every number is exact in binary. */
 const script = (build) => `
