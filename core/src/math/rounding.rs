@@ -72,7 +72,9 @@ pub fn round_doubles<F: Elementary>(x: f32, value: Scaled<f64>) -> f32 {
     const NEAR: u64 = 1 << 11;
     let y = value.m * f64_power_of_two(value.k);
     let from_middle = y.to_bits().wrapping_sub((BELOW >> 1) + 1 - NEAR) & BELOW;
-    if from_middle <= 2 * NEAR || (y < SMALLEST_NORMAL && y > -SMALLEST_NORMAL) {
+    // A value much smaller than what it is the difference of is not that good.
+    let small = SMALLEST_NORMAL.max(f64::from(F::UNCERTAINTY) * f64_power_of_two(33));
+    if from_middle <= 2 * NEAR || (y < small && y > -small) {
         let hard = F::HARD.iter().find(|(hard, _)| *hard == x.to_bits());
         if let Some((_, y)) = hard {
             return f32::from_bits(*y);

@@ -140,7 +140,7 @@ pub(crate) fn sweep(function: &Function, stride: u32, progress: &ProgressBar) ->
         }
     });
     if stride > 0 {
-        for bits in special(function.branches) {
+        for bits in special(function) {
             all.take(function, bits);
         }
     }
@@ -150,18 +150,23 @@ pub(crate) fn sweep(function: &Function, stride: u32, progress: &ProgressBar) ->
 
 /// Least number of inputs that [`sweep`] must have tried.
 pub(crate) fn promised(function: &Function, stride: u32) -> u64 {
-    let special = if stride > 0 { special(function.branches).len() as u64 } else { 0 };
+    let special = if stride > 0 { special(function).len() as u64 } else { 0 };
     (ALL >> stride) + special
 }
 
-/// Special values, every power of two, and every branch point, each with its neighbors, of both signs.
-fn special(branches: &[f32]) -> BTreeSet<u32> {
+/// Special values, every power of two, every branch point and every listed input, each with its neighbors, of both
+/// signs.
+fn special(function: &Function) -> BTreeSet<u32> {
     /// Quiet and signaling NaN, with payloads.
     const NAN: [u32; 4] = [0x7fc0_0000, 0x7f80_0001, 0x7fff_ffff, 0x7fa5_a5a5];
     let powers = (0..=255_u32).map(|exponent| exponent << 23);
     let middles = (0..255_u32).map(|exponent| (exponent << 23) | 0x0040_0000);
-    let branches = branches.iter().map(|x| x.to_bits() & 0x7fff_ffff);
-    let magnitudes =
-        powers.chain(middles).chain(branches).flat_map(|m| (0..9).map(move |d| (m + d).saturating_sub(4)));
+    let branches = function.branches.iter().map(|x| x.to_bits() & 0x7fff_ffff);
+    let hard = function.hard.iter().map(|(x, _)| x & 0x7fff_ffff);
+    let magnitudes = powers
+        .chain(middles)
+        .chain(branches)
+        .chain(hard)
+        .flat_map(|m| (0..9).map(move |d| (m + d).saturating_sub(4)));
     magnitudes.chain(NAN).flat_map(|m| [m & 0x7fff_ffff, m | 0x8000_0000]).collect()
 }
