@@ -16,6 +16,7 @@ mod report;
 mod server;
 mod setup;
 mod sizes;
+mod targets;
 mod test;
 mod toolchain;
 mod wasm;
@@ -50,6 +51,15 @@ enum Chore {
     /// Run every check and test.
     Test {
         /// Only checks with this in their name.
+        #[arg(long, default_value = "")]
+        filter: String,
+    },
+    /// Run one program on every target there is to be had, emulated ones too, and compare the bits.
+    Targets {
+        /// One JSON object on standard output, nothing else there.
+        #[arg(long)]
+        json: bool,
+        /// Only targets with this in their name, beside the first.
         #[arg(long, default_value = "")]
         filter: String,
     },
@@ -108,6 +118,7 @@ fn run(chore: Chore) -> Result<bool> {
     let result = match chore {
         Chore::Test { filter } => return test::run(&filter),
         Chore::Exhaustive { json, function } => return exhaustive::run(json, &function),
+        Chore::Targets { json, filter } => return targets::run(json, &filter).map(|(_, failed)| failed == 0),
         Chore::Setup => setup::run(),
         Chore::Demo { headless, port } => demo::run(headless, port),
         Chore::Wasm => wasm::run(),

@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use crate::count::Count;
 use crate::report::Step;
 use crate::toolchain::Toolchain;
-use crate::{cache, exhaustive, fuzz, nightly, npm, page, process, report, wasm, workspace};
+use crate::{cache, exhaustive, fuzz, nightly, npm, page, process, report, targets, wasm, workspace};
 
 /// A microcontroller without an operating system: what compiles for it needs no `std`.
 const BARE_METAL: &str = "thumbv7em-none-eabihf";
@@ -37,7 +37,7 @@ struct Check {
     run: fn(&str) -> Result<Outcome>,
 }
 
-const CHECKS: [Check; 15] = [
+const CHECKS: [Check; 16] = [
     Check { name: "format", run: |name| cargo(name, &["fmt", "--all", "--check"], &[]) },
     Check { name: "clippy", run: clippy },
     Check { name: "rustdoc", run: rustdoc },
@@ -46,6 +46,7 @@ const CHECKS: [Check; 15] = [
     Check { name: "tests, release", run: tests_release },
     Check { name: "golden tests, native CPU", run: tests_native },
     Check { name: "accuracy, strided", run: accuracy },
+    Check { name: "one hash on every target", run: every_target },
     Check { name: "no_std on bare metal", run: bare_metal },
     Check { name: "fuzzing, briefly", run: |_| done(fuzz::run(FUZZ_SECONDS, None)) },
     Check { name: "core under Miri", run: miri },
@@ -178,6 +179,12 @@ fn tests_native(name: &str) -> Result<Outcome> {
 /// Every 2¹⁰-th input of each elementary function, and all special ones.
 fn accuracy(name: &str) -> Result<Outcome> {
     program(name, &mut exhaustive::strided())
+}
+
+fn every_target(_: &str) -> Result<Outcome> {
+    let (passed, failed) = targets::run(false, "")?;
+    let count = Count { passed, failed };
+    Ok(if failed == 0 { Outcome::Passed(count) } else { Outcome::Failed(count, "targets differ".to_owned()) })
 }
 
 fn bare_metal(name: &str) -> Result<Outcome> {

@@ -14,10 +14,16 @@ use core::ops::{Add, BitAnd, Div, Mul, Sub};
 pub(crate) use scalar::Scalar;
 
 /// The lanes of this target. Without vector registers `wide` falls back to arrays too, but slower ones.
-#[cfg(any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128"))]
+#[cfg(all(
+    any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128"),
+    not(sinew_scalar)
+))]
 pub(crate) type F32x4 = vector::Vector;
-/// The lanes of this target. Without vector registers `wide` falls back to arrays too, but slower ones.
-#[cfg(not(any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128")))]
+/// The lanes of this target, or of a build with `--cfg sinew_scalar`, which the tests compare.
+#[cfg(any(
+    not(any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128")),
+    sinew_scalar
+))]
 pub(crate) type F32x4 = scalar::Scalar;
 
 /// What a kernel may ask of four lanes.
