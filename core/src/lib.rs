@@ -34,6 +34,7 @@ compile_error!("x87 rounds twice: sinew needs SSE2");
 pub mod asset;
 mod batch;
 mod character;
+mod dispatch;
 pub mod kernel;
 mod lanes;
 mod life;

@@ -173,7 +173,8 @@ fn arrows() -> BTreeMap<&'static str, &'static [&'static str]> {
     BTreeMap::from([
         ("math", &["lanes"][..]),
         ("lanes", &["math"]), // the scalar lanes take the square root from there
-        ("kernel", &["math", "lanes"]),
+        ("dispatch", &["lanes"]),
+        ("kernel", &["math", "lanes", "dispatch"]),
         ("stage", &["kernel", "math", "lanes"]),
         ("asset", &["kernel", "math"]),
         ("character", &["stage", "asset", "kernel", "math"]),
@@ -184,7 +185,7 @@ fn arrows() -> BTreeMap<&'static str, &'static [&'static str]> {
 /// Layer of a path below `core/src`, or of a module name.
 fn layer(module: &str) -> &str {
     match module {
-        "math" | "lanes" | "kernel" | "stage" | "asset" | "replay" => module,
+        "math" | "lanes" | "dispatch" | "kernel" | "stage" | "asset" | "replay" => module,
         _ => "character",
     }
 }

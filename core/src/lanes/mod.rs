@@ -5,8 +5,11 @@
 //! be added. The scalar type is the definition, compiled everywhere as the oracle of the tests.
 
 pub(crate) mod four;
+pub(crate) mod rows;
 mod scalar;
 mod vector;
+#[cfg(all(feature = "std", any(target_arch = "x86", target_arch = "x86_64"), not(sinew_scalar)))]
+pub(crate) mod x86;
 
 use core::ops::{Add, BitAnd, Div, Mul, Sub};
 
