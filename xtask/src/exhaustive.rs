@@ -25,12 +25,22 @@ pub(crate) fn run(json: bool, function: &str) -> Result<bool> {
     if function.is_empty() {
         sweep.args(["--table", TABLE]);
     }
+    if function.is_empty() {
+        process::run("every input of the quantiser", &mut quantiser())?;
+    }
     // Its own bars and lines: it takes an hour.
     let status = sweep.status().with_context(|| format!("cannot start {}", process::shown(&sweep)))?;
     if function.is_empty() && status.success() {
         report::note(format!("   wrote {TABLE}"));
     }
     Ok(status.success())
+}
+
+/// The runtime's own exhaustive tests, which skip most inputs in a debug build.
+fn quantiser() -> Command {
+    let mut cargo = process::cargo();
+    cargo.args(["test", "--release", "--package", "sinew", "--features", "std", "--lib", "exhaustive"]);
+    cargo
 }
 
 /// The part for every test: every 2¹⁰-th input and all special ones.

@@ -40,24 +40,24 @@ fn widen(x: &[i8; 16]) -> __m256i {
     _mm256_cvtepi8_epi16(bytemuck::cast(*x))
 }
 
-/// `W·(q + 128) − W·128`: the first factor of the instruction is unsigned.
+/// `(W + 128)·q − 128·q`: the first factor of the instruction is unsigned, and the correction is that of every row.
 #[inline]
 #[target_feature(enable = "avx2,avx512vl,avx512vnni")]
 fn four_vnni(rows: Block<'_>, q: &[i8]) -> [i32; 4] {
-    let (mut sums, mut shifts) = ([_mm256_setzero_si256(); 4], [_mm256_setzero_si256(); 4]);
+    let (mut sums, mut correction) = ([_mm256_setzero_si256(); 4], _mm256_setzero_si256());
     let ([a, b, c, d], (q, tail)) = (blocks::<32>(rows), q.as_chunks::<32>());
     let shift = _mm256_set1_epi8(-128);
     for ((((q, a), b), c), d) in q.iter().zip(a).zip(b).zip(c).zip(d) {
-        let q = _mm256_xor_si256(bytemuck::cast(*q), shift);
+        let q = bytemuck::cast(*q);
         let rows: [__m256i; 4] =
             [bytemuck::cast(*a), bytemuck::cast(*b), bytemuck::cast(*c), bytemuck::cast(*d)];
+        correction = _mm256_dpbusd_epi32(correction, shift, q);
         for i in 0..4 {
-            sums[i] = _mm256_dpbusd_epi32(sums[i], q, rows[i]);
-            shifts[i] = _mm256_dpbusd_epi32(shifts[i], shift, rows[i]);
+            sums[i] = _mm256_dpbusd_epi32(sums[i], _mm256_xor_si256(rows[i], shift), q);
         }
     }
-    for i in 0..4 {
-        sums[i] = _mm256_sub_epi32(sums[i], shifts[i]);
+    for sum in &mut sums {
+        *sum = _mm256_sub_epi32(*sum, correction);
     }
     with_tail(across(sums), rows, tail)
 }
