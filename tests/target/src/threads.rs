@@ -7,7 +7,7 @@ use std::thread;
 /// Characters.
 const CROWD: usize = 15;
 /// Frames.
-const FRAMES: u8 = 40;
+const FRAMES: u8 = 10;
 
 /// A digest a number of threads.
 pub(crate) fn digests(asset: Asset<'_>) -> Vec<Named> {
