@@ -17,3 +17,11 @@ fn golden_replay_of_the_built_in_character() {
     );
     assert_eq!(verified(asset, &played.replay), Ok(()));
 }
+
+/// The microcontroller's asset is made anew here, byte for byte.
+#[test]
+fn golden_tube_of_the_microcontroller() {
+    let made = sinew_tests::tube::asset(1.0);
+    let kept = include_bytes!("../mcu/tube.sinew");
+    assert_eq!(bytemuck::cast_slice::<u32, u8>(&made), kept, "write it anew");
+}

@@ -8,6 +8,7 @@ mod count;
 mod demo;
 mod exhaustive;
 mod fuzz;
+mod mcu;
 mod nightly;
 mod npm;
 mod page;
@@ -72,6 +73,8 @@ enum Chore {
         #[arg(long, default_value = "")]
         function: String,
     },
+    /// Run the firmware on emulated microcontrollers and compare the bits.
+    Mcu,
     /// Build the npm package into `wasm/pkg` and check its size.
     Wasm,
     /// Build the page and serve it.
@@ -119,6 +122,7 @@ fn run(chore: Chore) -> Result<bool> {
         Chore::Test { filter } => return test::run(&filter),
         Chore::Exhaustive { json, function } => return exhaustive::run(json, &function),
         Chore::Targets { json, filter } => return targets::run(json, &filter).map(|(_, failed)| failed == 0),
+        Chore::Mcu => return mcu::run(),
         Chore::Setup => setup::run(),
         Chore::Demo { headless, port } => demo::run(headless, port),
         Chore::Wasm => wasm::run(),

@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use crate::count::Count;
 use crate::report::Step;
 use crate::toolchain::Toolchain;
-use crate::{cache, exhaustive, fuzz, nightly, npm, page, process, report, targets, wasm, workspace};
+use crate::{cache, exhaustive, fuzz, mcu, nightly, npm, page, process, report, targets, wasm, workspace};
 
 /// A microcontroller without an operating system: what compiles for it needs no `std`.
 const BARE_METAL: &str = "thumbv7em-none-eabihf";
@@ -37,7 +37,7 @@ struct Check {
     run: fn(&str) -> Result<Outcome>,
 }
 
-const CHECKS: [Check; 16] = [
+const CHECKS: [Check; 17] = [
     Check { name: "format", run: |name| cargo(name, &["fmt", "--all", "--check"], &[]) },
     Check { name: "clippy", run: clippy },
     Check { name: "rustdoc", run: rustdoc },
@@ -48,6 +48,7 @@ const CHECKS: [Check; 16] = [
     Check { name: "accuracy, strided", run: accuracy },
     Check { name: "one hash on every target", run: every_target },
     Check { name: "no_std on bare metal", run: bare_metal },
+    Check { name: "microcontrollers", run: |_| microcontrollers() },
     Check { name: "fuzzing, briefly", run: |_| done(fuzz::run(FUZZ_SECONDS, None)) },
     Check { name: "core under Miri", run: miri },
     Check { name: "wasm package", run: |_| done(wasm::run()) },
@@ -185,6 +186,16 @@ fn every_target(_: &str) -> Result<Outcome> {
     let (passed, failed) = targets::run(false, "")?;
     let count = Count { passed, failed };
     Ok(if failed == 0 { Outcome::Passed(count) } else { Outcome::Failed(count, "targets differ".to_owned()) })
+}
+
+fn microcontrollers() -> Result<Outcome> {
+    match mcu::run() {
+        Ok(true) => Ok(Outcome::Passed(Count::PASSED)),
+        Ok(false) => Ok(Outcome::Failed(Count::FAILED, "digests differ".to_owned())),
+        // A person may lack the emulator.
+        Err(error) if !workspace::ci() => Ok(Outcome::Skipped(format!("{error:#}"))),
+        Err(error) => Err(error),
+    }
 }
 
 fn bare_metal(name: &str) -> Result<Outcome> {
