@@ -317,7 +317,7 @@ impl<'a> Character<'a> {
             self.steps = self.springs.map(|spring| Step::new(spring, dt, REST * size));
             self.steps_dt = dt;
         }
-        m.state.advance(m.targets, m.f, regions, &self.steps);
+        m.state.advance(&mut m.targets, &mut m.f, regions, &self.steps);
     }
 
     /// Positions of the render vertices, bind space: rest plus offsets. Skinning them shows the flesh.

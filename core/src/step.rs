@@ -99,7 +99,7 @@ impl Digests {
     pub(crate) fn of(m: &Workspace<'_>) -> Self {
         Self {
             pose: digest_of(&[m.palette.as_flattened().as_flattened()]),
-            skin: digest_of(&[m.targets.as_flattened(), m.f.as_flattened()]),
+            skin: digest_of(&[m.state.x.as_flattened(), m.state.f.as_flattened()]),
             dynamics: Self::of_dynamics(&m.state).dynamics,
             embed: digest_of(&[
                 m.offsets.as_flattened(),

@@ -38,9 +38,9 @@ pub(crate) struct Workspace<'a> {
     pub(crate) state: State<'a>,
     /// Offsets shown, bind space.
     pub(crate) offsets: &'a mut [[f32; 3]],
-    /// Targets of this step.
+    /// Targets of the step in work; they change places with those of [`State`].
     pub(crate) targets: &'a mut [[f32; 3]],
-    /// Accelerations of this step.
+    /// Accelerations of the step in work; they too.
     pub(crate) f: &'a mut [[f32; 3]],
     /// Linear parts of the blended maps.
     pub(crate) linear: &'a mut [LinearBlock],

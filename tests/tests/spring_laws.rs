@@ -34,10 +34,11 @@ fn energy(spring: Spring, y: f64, u: f64) -> f64 {
 
 /// One step of the array kernel towards a target that stays where it is.
 fn still(spring: Spring, h: f32, y: f32, u: f32) -> (f32, f32) {
-    let mut s = [[0.0_f32], [y], [u], [0.0], [0.0]];
-    let [x, y, v, slope, f] = &mut s;
-    advance(&Step::new(spring, h, 0.0), &[0.0], &[0.0], Knots { x, y, v, slope, f });
-    (s[1][0], s[2][0])
+    let (mut y, mut v, mut slope) = ([y], [u], [0.0]);
+    let zeros = [&[0.0][..]; 2];
+    let knots = Knots { x: zeros, f: zeros, y: &mut y, v: &mut v, slope: &mut slope };
+    advance(&Step::new(spring, h, 0.0), knots);
+    (y[0], v[0])
 }
 
 /// A step of length `part` without forcing, of states `(y, h·u)`, in `f64`: of the runtime's rounding only that of the
@@ -117,9 +118,9 @@ proptest! {
     #[test]
     fn the_step_turns_with_its_input((spring, h) in springs(), p in prop::array::uniform5(prop::array::uniform3(-1.0..1.0_f32)), angle in 0.0..core::f64::consts::TAU) {
         let step = Step::new(spring, h, 0.0);
-        let run = |[mut x, mut y, mut v, x1, f1]: [[f32; 3]; 5]| {
-            let (mut slope, mut f) = ([0.0; 3], [0.0; 3]);
-            advance(&step, &x1, &f1, Knots { x: &mut x, y: &mut y, v: &mut v, slope: &mut slope, f: &mut f });
+        let run = |[x0, mut y, mut v, x1, f1]: [[f32; 3]; 5]| {
+            let (mut slope, x, f) = ([0.0; 3], [&x0[..], &x1], [&[0.0; 3][..], &f1]);
+            advance(&step, Knots { x, f, y: &mut y, v: &mut v, slope: &mut slope });
             [y, v]
         };
         let of_each = |map: &dyn Fn([f32; 3]) -> [f32; 3]| (run(p.map(map)), run(p).map(map));

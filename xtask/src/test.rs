@@ -3,7 +3,7 @@
 use std::process::Command;
 use std::time::Instant;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
 use crate::count::Count;
 use crate::report::Step;
@@ -212,6 +212,11 @@ fn bare_metal(name: &str) -> Result<Outcome> {
 fn miri(name: &str) -> Result<Outcome> {
     if !nightly::has_miri() {
         return Ok(Outcome::Skipped("Miri cannot be had here".to_owned()));
+    }
+    // Its stand-ins for programs name the checkout that built them, which a kept build folder may outlive.
+    let stale = workspace::target_dir().join("nightly/miri");
+    if stale.exists() {
+        std::fs::remove_dir_all(&stale).with_context(|| format!("cannot remove {}", stale.display()))?;
     }
     let mut miri =
         nightly::cargo(&["miri", "test", "--package", "sinew", "--features", "std", "--lib", "--"]);

@@ -18,8 +18,8 @@
 
 use super::target::Target;
 use super::tiny::flush_all;
-use crate::lanes::{F32x4, Lanes};
-use crate::math::float::{max, min, sqrt};
+use crate::dispatch;
+use crate::math::float::{abs, max, min, sqrt};
 use crate::math::psi::{cut, psi_wide};
 use crate::math::twin::Twin;
 use crate::math::wide::Wide;
@@ -140,83 +140,56 @@ impl Step {
     }
 }
 
-/// State of springs at a frame, one float a component of a point.
+/// Springs between two frames, one float a component of a point. The shortest slice decides how many there are.
 #[derive(Debug)]
 pub struct Knots<'a> {
-    /// Target `X`, root space.
-    pub x: &'a mut [f32],
-    /// Offset `y` from the target.
+    /// Targets `X₀` and `X₁`, root space.
+    pub x: [&'a [f32]; 2],
+    /// Body accelerations `f₀` and `f₁`, per second squared.
+    pub f: [&'a [f32]; 2],
+    /// Offset `y` from the target: `y₀` goes in, `y₁` comes out.
     pub y: &'a mut [f32],
     /// Velocity `v`, not relative to the target, per second.
     pub v: &'a mut [f32],
     /// Slope `σ` of the target, per second.
     pub slope: &'a mut [f32],
-    /// Body acceleration `f`, per second squared.
-    pub f: &'a mut [f32],
 }
 
-/// Advances springs of equal parameters by one step to the target `x1` under the acceleration `f1`.
+/// Advances springs of equal parameters by one step.
+pub fn advance(step: &Step, knots: Knots<'_>) {
+    let Knots { x: [x0, x1], f: [f0, f1], y, v, slope } = knots;
+    dispatch::advance(step, x0, x1, f0, f1, y, v, slope);
+}
+
+/// The body of each copy of [`advance`]: `x₀, x₁, f₀, f₁` go in, `y, v, σ` through.
 ///
-/// # Panics
-///
-/// If the lengths differ.
-pub fn advance(step: &Step, x1: &[f32], f1: &[f32], knots: Knots<'_>) {
-    advance_with::<F32x4>(step, x1, f1, knots);
-}
-
-/// [`advance`] on a given lane type, so that a test can run the scalar one beside it.
-pub(crate) fn advance_with<L: Lanes>(step: &Step, x1: &[f32], f1: &[f32], knots: Knots<'_>) {
-    let Knots { x, y, v, slope, f } = knots;
-    let n = x1.len();
-    let lengths = [f1.len(), x.len(), y.len(), v.len(), slope.len(), f.len()];
-    assert!(lengths == [n; 6], "spring: lengths differ");
-    let (x1, x1_tail) = x1.as_chunks();
-    let (f1, f1_tail) = f1.as_chunks();
-    let (x, x_tail) = x.as_chunks_mut();
-    let (y, y_tail) = y.as_chunks_mut();
-    let (v, v_tail) = v.as_chunks_mut();
-    let (slope, slope_tail) = slope.as_chunks_mut();
-    let (f, f_tail) = f.as_chunks_mut();
-    for i in 0..x1.len() {
-        advance_four::<L>(step, &x1[i], &f1[i], [&mut x[i], &mut y[i], &mut v[i], &mut slope[i], &mut f[i]]);
-    }
-    let tail = x1_tail.len();
-    if tail > 0 {
-        let pad = |x: &[f32]| core::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
-        let mut block = [pad(x_tail), pad(y_tail), pad(v_tail), pad(slope_tail), pad(f_tail)];
-        let [a, b, c, d, e] = &mut block;
-        advance_four::<L>(step, &pad(x1_tail), &pad(f1_tail), [a, b, c, d, e]);
-        for (to, from) in [x_tail, y_tail, v_tail, slope_tail, f_tail].into_iter().zip(&block) {
-            to.copy_from_slice(&from[..tail]);
-        }
-    }
-}
-
-/// Four components.
+/// Components know nothing of each other, so the compiler takes as many at a time as a register holds.
 #[inline(always)]
-fn advance_four<L: Lanes>(step: &Step, x1: &[f32; 4], f1: &[f32; 4], state: [&mut [f32; 4]; 5]) {
-    let [x, y, v, slope, f] = state;
-    let [dt, inverse] = step.dt.map(L::splat);
-    let load = |a: &[f32; 4]| L::from_array(*a);
-    let (x1, f1, y0, f0, sigma) = (load(x1), load(f1), load(y), load(f), load(slope));
-    let d = x1 - load(x);
-    let e = d - sigma * dt;
-    let u0 = load(v) - sigma;
-    let row = |w: &[f32; 5]| {
-        let w = w.map(L::splat);
-        ((w[0] * y0 + w[1] * u0) + w[2] * e) + (w[3] * f0 + w[4] * f1)
-    };
-    let (y1, u1) = (row(&step.y), row(&step.u));
-    // A component at rest is set to rest, so that nothing trembles and no subnormal lingers.
-    let (zero, [y_rest, u_rest]) = (L::splat(0.0), step.rest.map(L::splat));
-    let resting = y1.abs().lt(y_rest) & u1.abs().lt(u_rest);
-    let settle = |a: L| L::select(resting, zero, a);
-    let sigma = d * inverse;
-    *y = settle(y1).to_array();
-    *v = (settle(u1) + sigma).to_array();
-    *x = x1.to_array();
-    *slope = sigma.to_array();
-    *f = f1.to_array();
+#[allow(clippy::too_many_arguments, reason = "only as arguments they are known not to overlap")]
+pub(crate) fn advance_any(
+    step: &Step,
+    x0: &[f32],
+    x1: &[f32],
+    f0: &[f32],
+    f1: &[f32],
+    y: &mut [f32],
+    v: &mut [f32],
+    slope: &mut [f32],
+) {
+    let Step { dt: [dt, inverse], y: wy, u: wu, rest: [y_rest, u_rest] } = *step;
+    let row = |w: [f32; 5], y0, u0, e, f0, f1| ((w[0] * y0 + w[1] * u0) + w[2] * e) + (w[3] * f0 + w[4] * f1);
+    let given = x0.iter().zip(x1).zip(f0.iter().zip(f1));
+    for (((x0, x1), (f0, f1)), ((y, v), slope)) in given.zip(y.iter_mut().zip(v).zip(slope)) {
+        let d = x1 - x0;
+        let e = d - *slope * dt;
+        let (y0, u0) = (*y, *v - *slope);
+        let (y1, u1) = (row(wy, y0, u0, e, f0, f1), row(wu, y0, u0, e, f0, f1));
+        // A component at rest is set to rest, so that nothing trembles and no subnormal lingers.
+        let resting = (abs(y1) < y_rest) & (abs(u1) < u_rest);
+        *slope = d * inverse;
+        *y = if resting { 0.0 } else { y1 };
+        *v = if resting { 0.0 } else { u1 } + *slope;
+    }
 }
 
 #[cfg(test)]
@@ -245,13 +218,13 @@ mod tests {
     fn advance_agrees_with_evaluate() {
         for (ks, kd) in [(0.0, 0.0), (400.0, 4.0), (400.0, 40.0), (1.0, 100.0), (1e6, 1e4), (1e-6, 0.0)] {
             let (spring, dt) = (Spring { ks, kd }, 1.0 / 60.0);
-            let mut s = [[0.2_f32; 1], [0.05], [1.5], [0.7], [0.3]];
-            let [x, y, v, slope, f] = &mut s;
+            let (mut y, mut v, mut slope) = ([0.05], [1.5], [0.7]);
             let target = Target::causal(0.2, 0.7, 0.23, dt);
             let want = evaluate(spring, &target, 0.05, 1.5, [0.3, -0.2], dt, 1.0);
-            advance(&Step::new(spring, dt, 0.0), &[0.23], &[-0.2], Knots { x, y, v, slope, f });
-            assert!((s[1][0] - want.0).abs() < 1e-6, "ks {ks} kd {kd}: {} {}", s[1][0], want.0);
-            assert!((s[2][0] - want.1).abs() < 2e-5, "ks {ks} kd {kd}: {} {}", s[2][0], want.1);
+            let (x, f): ([&[f32]; 2], [&[f32]; 2]) = ([&[0.2], &[0.23]], [&[0.3], &[-0.2]]);
+            advance(&Step::new(spring, dt, 0.0), Knots { x, f, y: &mut y, v: &mut v, slope: &mut slope });
+            assert!((y[0] - want.0).abs() < 1e-6, "ks {ks} kd {kd}: {} {}", y[0], want.0);
+            assert!((v[0] - want.1).abs() < 2e-5, "ks {ks} kd {kd}: {} {}", v[0], want.1);
         }
     }
 
@@ -285,31 +258,45 @@ mod tests {
     fn gravity_sags_by_g_over_ks() {
         let spring = Spring::new(2.0, 0.4);
         let step = Step::new(spring, 1.0 / 60.0, 0.0);
-        let mut s = [[0.0_f32], [0.0], [0.0], [0.0], [-9.0]];
+        let (mut y, mut v, mut slope) = ([0.0], [0.0], [0.0]);
         for _ in 0..600 {
-            let [x, y, v, slope, f] = &mut s;
-            advance(&step, &[0.0], &[-9.0], Knots { x, y, v, slope, f });
+            let (x, f) = ([&[0.0][..]; 2], [&[-9.0][..]; 2]);
+            advance(&step, Knots { x, f, y: &mut y, v: &mut v, slope: &mut slope });
         }
-        assert!((s[1][0] + 9.0 / spring.ks).abs() < 1e-6, "{}", s[1][0]);
+        assert!((y[0] + 9.0 / spring.ks).abs() < 1e-6, "{}", y[0]);
     }
 
+    /// Every length and alignment: each copy that this machine can run gives the bits of one component at a time.
     #[test]
-    fn lanes_agree_with_scalar_bit_for_bit() {
-        use crate::lanes::Scalar;
+    fn copies_agree_with_one_at_a_time() {
         let step = Step::new(Spring::new(2.5, 0.3), 1.0 / 90.0, 1e-3);
-        for n in 0..67_u16 {
-            let wave = |k: u16| -> Vec<f32> { (0..n).map(|i| f32::from(i * k % 17) * 0.01 - 0.08).collect() };
-            let (x1, f1) = (wave(3), wave(5));
-            let start = || [wave(7), wave(11), wave(13), wave(2), wave(4)];
-            let (mut a, mut b) = (start(), start());
-            let knots = |s: &mut [Vec<f32>; 5], run: fn(&Step, &[f32], &[f32], Knots<'_>)| {
-                let [x, y, v, slope, f] = s;
-                run(&step, &x1, &f1, Knots { x, y, v, slope, f });
-            };
-            knots(&mut a, advance_with::<F32x4>);
-            knots(&mut b, advance_with::<Scalar>);
-            let bits = |s: &[Vec<f32>; 5]| s.concat().iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-            assert_eq!(bits(&a), bits(&b), "{n} components");
+        for n in 0..67 {
+            for offset in 0..16 {
+                let wave = |k: u16| -> Vec<f32> {
+                    (0..n + offset).map(|i| f32::from(i * k % 17) * 0.01 - 0.08).collect()
+                };
+                let given = [3, 5, 6, 12].map(wave);
+                let given = [0, 1, 2, 3].map(|k| &given[k][usize::from(offset)..]);
+                let [x0, x1, f0, f1] = given;
+                let start = [7, 11, 13].map(wave);
+                let mut want = start.clone();
+                for i in 0..usize::from(n) {
+                    let [y, v, slope] = &mut want;
+                    let at = i + usize::from(offset);
+                    let one = |v: &mut Vec<f32>| core::array::from_fn::<_, 1, _>(|_| v[at]);
+                    let [x0, x1, f0, f1] = given.map(|g| &g[i..=i]);
+                    let (mut y1, mut v1, mut slope1) = (one(y), one(v), one(slope));
+                    advance_any(&step, x0, x1, f0, f1, &mut y1, &mut v1, &mut slope1);
+                    [y[at], v[at], slope[at]] = [y1[0], v1[0], slope1[0]];
+                }
+                let bits = |s: &[Vec<f32>; 3]| s.concat().iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+                for level in dispatch::levels() {
+                    let mut found = start.clone();
+                    let [y, v, slope] = found.each_mut().map(|s| &mut s[usize::from(offset)..]);
+                    dispatch::advance_at(level, &step, x0, x1, f0, f1, y, v, slope);
+                    assert_eq!(bits(&found), bits(&want), "{level:?}: {n} components, {offset} off");
+                }
+            }
         }
     }
 }

@@ -92,10 +92,10 @@ pub(crate) fn critical() -> Vec<Seen> {
             let kd = f32::from_bits((2.0 * omega * 1.0_f32).to_bits().wrapping_add_signed(ulps));
             for dt in [1e-5, 1.0 / 60.0, 1.0] {
                 let step = Step::new(Spring { ks: omega * omega, kd }, dt, 1e-7);
-                let mut s = [[0.2_f32; 5], [0.05; 5], [1.5; 5], [0.7; 5], [0.3; 5]];
+                let mut s = [[0.05_f32; 5], [1.5; 5], [0.7; 5]];
                 for _ in 0..20 {
-                    let [x, y, v, slope, f] = &mut s;
-                    advance(&step, &[0.23; 5], &[-0.2; 5], Knots { x, y, v, slope, f });
+                    let ([y, v, slope], x, f) = (&mut s, [&[0.2][..], &[0.23]], [&[0.3][..], &[-0.2]]);
+                    advance(&step, Knots { x, f, y, v, slope });
                 }
                 assert!(s.as_flattened().iter().all(|x| x.is_finite()), "omega {omega}, {ulps} ulp, {dt} s");
                 seen.push(HARMLESS);

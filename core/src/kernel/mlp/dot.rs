@@ -32,6 +32,16 @@ mod tests {
         core::iter::repeat_with(next).take(n).collect()
     }
 
+    /// Each copy that this machine can run gives `(row, sum)` of all rows as wanted.
+    fn sums_agree(w: &[i8], q: &[i8], want: &[(usize, i64)]) {
+        for level in dispatch::levels() {
+            let mut found = Vec::new();
+            dispatch::rows_at(level, w, q, |row, z| found.push((row, i64::from(z))));
+            let (inputs, at) = (q.len(), [w.as_ptr() as usize % 16, q.as_ptr() as usize % 16]);
+            assert_eq!(found, want, "{level:?}: {} weights, {inputs} inputs at {at:?}", w.len());
+        }
+    }
+
     #[test]
     fn exhaustive_products() {
         for w in i8::MIN..=i8::MAX {
@@ -42,7 +52,7 @@ mod tests {
             }
             // And in the lanes, where 256 of them are summed.
             let want = std::vec![(0, expected.iter().map(|z| i64::from(*z)).sum())];
-            dispatch::rows_by_each(&[w; 256], &all, |name, found| assert_eq!(found, want, "{name} {w}"));
+            sums_agree(&[w; 256], &all, &want);
         }
     }
 
@@ -58,9 +68,7 @@ mod tests {
                         |row: &[i8]| row.iter().zip(q).map(|(w, q)| i64::from(*w) * i64::from(*q)).sum();
                     let want: Vec<(usize, i64)> =
                         if n == 0 { Vec::new() } else { w.chunks_exact(n).map(exact).enumerate().collect() };
-                    dispatch::rows_by_each(w, q, |name, found| {
-                        assert_eq!(found, want, "{name}: {n} inputs, {count} rows, {offset} off");
-                    });
+                    sums_agree(w, q, &want);
                 }
             }
         }
@@ -70,6 +78,6 @@ mod tests {
     fn the_largest_sum_fits() {
         let (w, q) = (std::vec![-128; MAX_INPUTS], std::vec![127; MAX_INPUTS]);
         let want = std::vec![(0, -2_147_482_624)];
-        dispatch::rows_by_each(&w, &q, |name, found| assert_eq!(found, want, "{name}"));
+        sums_agree(&w, &q, &want);
     }
 }

@@ -3,6 +3,7 @@
 use crate::kernel::spring::{self, Knots, Spring, Step};
 use crate::math::affine::{self, Affine};
 use crate::math::vec3;
+use core::ops::Range;
 
 /// State of all moving points at the last step. Vectors in the root's frame, model units and seconds.
 #[derive(Debug)]
@@ -27,7 +28,17 @@ fn rotate(map: &Affine, vectors: &mut [[f32; 3]]) {
     }
 }
 
-impl State<'_> {
+/// Components of a run of points, none where there are not so many.
+fn components<'a>(points: &'a [[f32; 3]], run: &Range<usize>) -> &'a [f32] {
+    points.get(run.clone()).unwrap_or_default().as_flattened()
+}
+
+/// The same, to change.
+fn components_mut<'a>(points: &'a mut [[f32; 3]], run: &Range<usize>) -> &'a mut [f32] {
+    points.get_mut(run.clone()).unwrap_or_default().as_flattened_mut()
+}
+
+impl<'a> State<'a> {
     /// The arrays, in the order in which they are saved and hashed.
     #[must_use]
     pub fn arrays(&self) -> [&[[f32; 3]]; 5] {
@@ -96,21 +107,30 @@ impl State<'_> {
             })
     }
 
-    /// Advances every point by one step; `steps` is indexed by region. Runs of equal regions are one stream.
-    pub fn advance(&mut self, targets: &[[f32; 3]], f: &[[f32; 3]], regions: &[u8], steps: &[Step]) {
+    /// Advances every point by one step to `targets`; `steps` is indexed by region. Runs of equal regions are one
+    /// stream. `targets` and `f` change places with those of the last step.
+    pub fn advance(
+        &mut self,
+        targets: &mut &'a mut [[f32; 3]],
+        f: &mut &'a mut [[f32; 3]],
+        regions: &[u8],
+        steps: &[Step],
+    ) {
         let mut start = 0;
         for run in regions.chunk_by(|a, b| a == b) {
             let range = start..start + run.len();
+            start = range.end;
+            let Some(step) = run.first().and_then(|region| steps.get(usize::from(*region))) else { continue };
             let knots = Knots {
-                x: self.x[range.clone()].as_flattened_mut(),
-                y: self.y[range.clone()].as_flattened_mut(),
-                v: self.v[range.clone()].as_flattened_mut(),
-                slope: self.slope[range.clone()].as_flattened_mut(),
-                f: self.f[range.clone()].as_flattened_mut(),
+                x: [components(self.x, &range), components(targets, &range)],
+                f: [components(self.f, &range), components(f, &range)],
+                y: components_mut(self.y, &range),
+                v: components_mut(self.v, &range),
+                slope: components_mut(self.slope, &range),
             };
-            let step = &steps[usize::from(run[0])];
-            spring::advance(step, targets[range.clone()].as_flattened(), f[range].as_flattened(), knots);
-            start += run.len();
+            spring::advance(step, knots);
         }
+        core::mem::swap(&mut self.x, targets);
+        core::mem::swap(&mut self.f, f);
     }
 }
