@@ -6,7 +6,7 @@ use crate::kernel::clip::Channels;
 use crate::kernel::skin::{self, Rows};
 use crate::kernel::spring::{Spring, Step};
 use crate::kernel::tiny::{flush, flush_all};
-use crate::kernel::unskin::{self, Limit};
+use crate::kernel::unskin::{self, Limit, Tissue};
 use crate::life::{Life, Phase};
 use crate::math::affine::{self, Affine};
 use crate::math::{canary, float, noise, vec3};
@@ -238,7 +238,7 @@ impl<'a> Character<'a> {
         }
         let life = &mut self.life;
         life.pending = float::min(life.pending + dt, 1e9);
-        life.turn = (life.turn + 1) % life.divisor;
+        life.turn = (life.turn + 1) % life.divisor.max(1);
         if life.frozen || life.turn != 0 || life.pending < SHORTEST_STEP {
             return None;
         }
@@ -259,13 +259,13 @@ impl<'a> Character<'a> {
         let root = root.flushed();
         let forces = self.forces(&root, dt);
         let (asset, m) = (&self.asset, &mut self.memory);
-        let active = asset.meta.active as usize;
         let out = Targets { positions: m.targets, accelerations: m.f, linear: m.linear };
-        skin_stage::targets(m.palette, asset.influences, &asset.rest[..active], forces, out);
+        skin_stage::targets(m.palette, asset.influences, asset.rest, forces, out);
         self.follow(&root, dt);
         let (asset, m) = (&self.asset, &mut self.memory);
-        let tissue = (asset.softness, asset.region_of_point);
-        unskin::unskin(m.palette, asset.influences, m.linear, m.state.y, tissue, &self.limits, m.offsets);
+        let tissue =
+            Tissue { softness: asset.softness, region: asset.region_of_point, limits: &self.limits };
+        unskin::unskin(m.palette, asset.influences, m.linear, m.state.y, tissue, m.offsets);
         embed::embed(surface(asset), m.offsets, m.positions, m.normals);
         self.life.root = root;
         Stepped::Advanced
@@ -314,7 +314,8 @@ impl<'a> Character<'a> {
             life.phase = Phase::Running;
         }
         if self.steps_dt.to_bits() != dt.to_bits() {
-            self.steps = self.springs.map(|spring| Step::new(spring, dt, REST * size));
+            let used = self.steps.iter_mut().zip(&self.springs).take(self.asset.regions.len());
+            used.for_each(|(step, spring)| *step = Step::new(*spring, dt, REST * size));
             self.steps_dt = dt;
         }
         m.state.advance(&mut m.targets, &mut m.f, regions, &self.steps);
@@ -352,18 +353,30 @@ impl<'a> Character<'a> {
 
     /// Skins the render vertices: positions and normals in the root's frame, with flesh or without.
     ///
-    /// # Panics
+    /// # Errors
     ///
-    /// If a buffer has not one element a render vertex.
-    pub fn skin_surface(&self, flesh: bool, positions: &mut [[f32; 3]], normals: &mut [[f32; 3]]) {
+    /// [`LengthError`] unless both buffers have one element a render vertex.
+    pub fn skin_surface(
+        &self,
+        flesh: bool,
+        positions: &mut [[f32; 3]],
+        normals: &mut [[f32; 3]],
+    ) -> Result<(), LengthError> {
         let (asset, m) = (&self.asset, &self.memory);
+        let expected = m.positions.len();
+        for found in [positions.len(), normals.len()] {
+            if found != expected {
+                return Err(LengthError { expected, found });
+            }
+        }
         if flesh {
-            positions.copy_from_slice(m.positions);
-            normals.copy_from_slice(m.normals);
+            positions.iter_mut().zip(&*m.positions).for_each(|(to, from)| *to = *from);
+            normals.iter_mut().zip(&*m.normals).for_each(|(to, from)| *to = *from);
         } else {
             embed::rest(surface(asset), positions, normals);
         }
         skin::skin_surface(m.palette, asset.influences, asset.point_of_vertex, positions, normals);
+        Ok(())
     }
 
     /// Digests of what each stage made.

@@ -8,8 +8,12 @@
     reason = "a function for instructions that not every processor has can only be called so"
 )]
 
+use crate::kernel::skin::{Influences, LinearBlock, Rows, skin_any, skin_surface_any};
 use crate::kernel::spring::{Step, advance_any};
+use crate::kernel::unskin::{Tissue, unskin_any};
+use crate::lanes::F32x4;
 use crate::lanes::rows::rows_plain;
+use crate::stage::skin::accelerate_any;
 
 /// Instructions that this processor has. Only their detection makes one: who holds it may use them.
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +96,23 @@ macro_rules! copies {
 
 copies!(advance, advance_at, advance_any, (
     step: &Step, x0: &[f32], x1: &[f32], f0: &[f32], f1: &[f32], y: &mut [f32], v: &mut [f32], slope: &mut [f32]
+));
+
+copies!(skin, skin_at, skin_any::<F32x4>, (
+    palette: &[Rows], influences: Influences<'_>, rest: &[[f32; 3]], out: &mut [[f32; 3]], linear: &mut [LinearBlock]
+));
+
+copies!(skin_surface, skin_surface_at, skin_surface_any::<F32x4>, (
+    palette: &[Rows], influences: Influences<'_>, points: &[u32], positions: &mut [[f32; 3]], normals: &mut [[f32; 3]]
+));
+
+copies!(accelerate, accelerate_at, accelerate_any, (
+    gravity: [f32; 3], authored: [f32; 3], linear: &[LinearBlock], out: &mut [[f32; 3]]
+));
+
+copies!(unskin, unskin_at, unskin_any, (
+    palette: &[Rows], influences: Influences<'_>, linear: &[LinearBlock], y: &[[f32; 3]], tissue: Tissue<'_>,
+    out: &mut [[f32; 3]]
 ));
 
 /// Sums of the rows of `weights` times `q`; each goes to `each(row, sum)`.

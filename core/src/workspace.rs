@@ -1,7 +1,7 @@
 //! The caller's memory, split once into the arrays of a character.
 
 use crate::asset::Asset;
-use crate::kernel::skin::{LinearBlock, Rows};
+use crate::kernel::skin::{BLOCK, LinearBlock, Rows};
 use crate::math::affine::Affine;
 use crate::stage::dynamics::springs::State;
 use core::fmt;
@@ -30,6 +30,9 @@ impl fmt::Display for LengthError {
 }
 
 impl core::error::Error for LengthError {}
+
+/// Floats of a block's linear maps.
+const LINEAR: usize = 9 * BLOCK;
 
 /// Arrays of a character in the caller's memory.
 #[derive(Debug)]
@@ -70,7 +73,7 @@ impl<'a> Workspace<'a> {
     pub(crate) fn required_len(asset: &Asset<'_>) -> usize {
         let m = &asset.meta;
         let [active, vertices, joints, nodes] = [m.active, m.vertices, m.joints, m.nodes].map(|n| n as usize);
-        active * (8 * 3) + active.div_ceil(4) * 36 + vertices * 6 + joints * (12 + 12) + nodes * (10 + 12)
+        active * (8 * 3) + active.div_ceil(BLOCK) * LINEAR + vertices * 6 + joints * (12 + 12) + nodes * (10 + 12)
     }
 
     /// Splits `buffer`.
@@ -86,7 +89,7 @@ impl<'a> Workspace<'a> {
         Ok(Self {
             // Wide elements first: they keep the alignment of the buffer.
             palette: bytemuck::cast_slice_mut(take::<12>(buffer, joints)),
-            linear: bytemuck::cast_slice_mut(take::<36>(buffer, active.div_ceil(4))),
+            linear: bytemuck::cast_slice_mut(take::<LINEAR>(buffer, active.div_ceil(BLOCK))),
             joints: bytemuck::cast_slice_mut(take::<12>(buffer, joints)),
             model: bytemuck::cast_slice_mut(take::<12>(buffer, nodes)),
             state: State {

@@ -31,7 +31,7 @@ pub fn tube_meta() -> Meta {
         active: ACTIVE,
         vertices: VERTICES,
         joints: JOINTS,
-        stride: 2,
+        stride: 4,
         regions: 2,
         moved: moved().len().try_into().unwrap_or(0),
         lit: moved().len().try_into().unwrap_or(0),

@@ -89,8 +89,8 @@ fn states_and_skinning_allocate_nothing() {
         c.load_state(state).expect("a state of its own");
         state[20] ^= 1;
         assert!(c.load_state(state).is_err(), "refused");
-        c.skin_surface(true, &mut positions, &mut normals);
-        c.skin_surface(false, &mut positions, &mut normals);
+        c.skin_surface(true, &mut positions, &mut normals).expect("its length");
+        c.skin_surface(false, &mut positions, &mut normals).expect("its length");
         let step =
             |c: &mut Character<'_>| c.step(Pose { root: Root::default(), root_from_joint: joints }, DT);
         sync_test(c, step, &mut bytes).expect("its length");

@@ -1,8 +1,8 @@
 //! Laws of skinning and of taking offsets back, over random skeletons: they turn, move and scale with their input.
 
 use proptest::prelude::*;
-use sinew::kernel::skin::{Influences, LinearBlock, Rows, skin, skin_surface};
-use sinew::kernel::unskin::{Limit, unskin};
+use sinew::kernel::skin::{BLOCK, Influences, LinearBlock, Rows, skin, skin_surface};
+use sinew::kernel::unskin::{Limit, Tissue, unskin};
 
 /// Points, of four influences each; not a multiple of a block.
 const N: usize = 11;
@@ -64,11 +64,16 @@ fn turned(m: &[Vector; 3], palette: &[Rows]) -> Vec<Rows> {
     palette.iter().map(of).collect()
 }
 
+/// A set a point.
+fn influences<'a>(joints: &'a [u16], weights: &'a [f32]) -> Influences<'a> {
+    Influences { sets: 1, joints: joints.as_chunks().0, weights: weights.as_chunks().0 }
+}
+
 /// Positions and linear parts.
 fn skinned(palette: &[Rows], joints: &[u16], rest: &[Vector]) -> (Vec<Vector>, Vec<LinearBlock>) {
     let weights = WEIGHTS.repeat(N);
-    let influences = Influences { stride: 4, joints, weights: &weights };
-    let (mut out, mut linear) = (vec![[0.0; 3]; N], vec![[[[0.0; 4]; 3]; 3]; N.div_ceil(4)]);
+    let influences = influences(joints, &weights);
+    let (mut out, mut linear) = (vec![[0.0; 3]; N], vec![[[[0.0; BLOCK]; 3]; 3]; N.div_ceil(BLOCK)]);
     skin(palette, influences, rest, &mut out, &mut linear);
     (out, linear)
 }
@@ -76,10 +81,11 @@ fn skinned(palette: &[Rows], joints: &[u16], rest: &[Vector]) -> (Vec<Vector>, V
 fn taken_back(palette: &[Rows], joints: &[u16], rest: &[Vector], y: &[Vector]) -> Vec<Vector> {
     let (_, linear) = skinned(palette, joints, rest);
     let weights = WEIGHTS.repeat(N);
-    let influences = Influences { stride: 4, joints, weights: &weights };
+    let influences = influences(joints, &weights);
     let limits = [Limit { gain: 1.0, inverse_square: 4.0 }];
     let mut out = vec![[0.0; 3]; N];
-    unskin(palette, influences, &linear, y, (&[0.75; N], &[0; N]), &limits, &mut out);
+    let tissue = Tissue { softness: &[0.75; N], region: &[0; N], limits: &limits };
+    unskin(palette, influences, &linear, y, tissue, &mut out);
     out
 }
 
@@ -120,7 +126,7 @@ proptest! {
 
         let weights = WEIGHTS.repeat(N);
         let surface = |palette: &[Rows]| {
-            let influences = Influences { stride: 4, joints: &joints, weights: &weights };
+            let influences = influences(&joints, &weights);
             let of: Vec<u32> = (0_u32..).take(N).collect();
             let (mut positions, mut normals) = (rest.clone(), vec![[0.6, 0.0, 0.8]; N]);
             skin_surface(palette, influences, &of, &mut positions, &mut normals);

@@ -365,7 +365,7 @@ impl RawCharacter {
             self.skinned = filled(2 * vertices, [0.0; 3])?;
         }
         let (positions, normals) = self.skinned.split_at_mut(vertices);
-        character.skin_surface(flesh, positions, normals);
+        character.skin_surface(flesh, positions, normals)?;
         Ok(address(&self.skinned))
     }
 }

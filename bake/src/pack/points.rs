@@ -88,7 +88,7 @@ impl Points {
             point_of_candidate[*candidate] = point;
         }
         let sorted = || order.iter().map(|i| &candidates[*i]);
-        let stride = sorted().map(|c| c.influences.len()).max().unwrap_or(1).max(1);
+        let stride = sorted().map(|c| c.influences.len()).max().unwrap_or(1).max(1).next_multiple_of(4);
         let padded = |c: &Candidate| {
             let filler = core::iter::repeat((c.influences.first().map_or(0, |i| i.0), 0.0));
             c.influences.clone().into_iter().chain(filler).take(stride).collect::<Vec<_>>()

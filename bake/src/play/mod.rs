@@ -263,8 +263,13 @@ impl<'a> Player<'a> {
         for buffer in [&mut frame.skinned, &mut frame.skinned_normals] {
             buffer.resize(n, [0.0; 3]);
         }
-        self.character.skin_surface(true, &mut frame.flesh, &mut frame.flesh_normals);
-        self.character.skin_surface(false, &mut frame.skinned, &mut frame.skinned_normals);
+        for (flesh, positions, normals) in [
+            (true, &mut frame.flesh, &mut frame.flesh_normals),
+            (false, &mut frame.skinned, &mut frame.skinned_normals),
+        ] {
+            let skinned = self.character.skin_surface(flesh, positions, normals);
+            debug_assert!(skinned.is_ok(), "a model and its asset have as many vertices");
+        }
         let size = self.character.asset().meta.body_size;
         let distance = |(a, b): (&[f32; 3], &[f32; 3])| {
             let d = [0, 1, 2].map(|i| a[i] - b[i]);

@@ -133,7 +133,7 @@ impl<'a> Asset<'a> {
             joint_node: s.cast(Section::JointNode)?,
             rest: s.cast(Section::Rest)?,
             influences: Influences {
-                stride: meta.stride as usize,
+                sets: (meta.stride / 4) as usize,
                 joints: s.cast(Section::InfluenceJoints)?,
                 weights: s.cast(Section::InfluenceWeights)?,
             },

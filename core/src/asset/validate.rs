@@ -43,7 +43,8 @@ fn meta(asset: &Asset<'_>) -> Check {
     let m = &asset.meta;
     let counts = m.active <= m.points
         && m.points <= m.vertices
-        && (1..=255).contains(&m.stride)
+        && (4..=252).contains(&m.stride)
+        && m.stride.is_multiple_of(4)
         && (1..=MAX_REGIONS as u64).contains(&m.regions.into())
         && m.joints > 0
         && m.joints <= 1 << 16
@@ -61,14 +62,15 @@ fn meta(asset: &Asset<'_>) -> Check {
 fn points(asset: &Asset<'_>) -> Check {
     let joints = asset.meta.joints;
     each(Section::Rest, asset.rest, |_, p| usable(p))?;
-    each(Section::InfluenceJoints, asset.influences.joints, |_, j| u32::from(*j) < joints)?;
-    let stride = asset.influences.stride.max(1);
-    let row = |row: &[f32]| {
+    each(Section::InfluenceJoints, asset.influences.joints.as_flattened(), |_, j| u32::from(*j) < joints)?;
+    let sets = asset.influences.sets.max(1);
+    let row = |sets: &[[f32; 4]]| {
+        let row = sets.as_flattened();
         let falling = row.is_sorted_by(|a, b| a >= b) && inside(row, 0.0..=1.0);
         let sum: f32 = row.iter().sum();
         falling && (sum - 1.0).abs() < 1e-3
     };
-    for (i, weights) in asset.influences.weights.chunks_exact(stride).enumerate() {
+    for (i, weights) in asset.influences.weights.chunks_exact(sets).enumerate() {
         if !row(weights) {
             let index = u32::try_from(i).unwrap_or(u32::MAX);
             return Err(AssetError::Invalid { section: Section::InfluenceWeights, index });

@@ -30,26 +30,33 @@ pub struct Keys<'a> {
 }
 
 impl Keys<'_> {
-    /// Entry `part` of key `i`; `parts` entries a key.
+    /// Entry `part` of key `i`; `parts` entries a key; zeros past the last value.
     fn entry<const N: usize>(&self, i: usize, part: usize, parts: usize) -> [f32; N] {
         let start = (i * parts + part) * N;
-        core::array::from_fn(|c| self.values[start + c])
+        self.values.get(start..).and_then(|values| values.first_chunk()).copied().unwrap_or([0.0; N])
+    }
+
+    /// The key before `t`, how far `t` is from it to the next, 0 to 1, and seconds between the two; or else the first
+    /// or last key.
+    fn span(&self, t: f32) -> Result<(usize, f32, f32), usize> {
+        let after = self.times.partition_point(|key| *key <= t);
+        let Some(before) = after.checked_sub(1) else { return Err(0) };
+        let (Some(t0), Some(t1)) = (self.times.get(before), self.times.get(after)) else { return Err(before) };
+        let span = t1 - t0;
+        Ok((before, (t - t0) / span, span))
     }
 
     /// Value at time `t`, s; before the first and after the last key the value of that key.
     ///
-    /// # Panics
-    ///
-    /// If there is no key, or fewer values than the keys need (a parsed asset holds neither).
+    /// A value that is missing counts as zeros (a parsed asset holds all).
     #[must_use]
     pub fn sample<const N: usize>(&self, t: f32) -> [f32; N] {
         let (parts, middle) = if self.interpolation == Interpolation::CubicSpline { (3, 1) } else { (1, 0) };
-        let after = self.times.partition_point(|key| *key <= t);
-        if after == 0 || after == self.times.len() {
-            return self.entry(after.saturating_sub(1), middle, parts);
-        }
-        let (i, span) = (after - 1, self.times[after] - self.times[after - 1]);
-        let tau = (t - self.times[i]) / span;
+        let (i, tau, span) = match self.span(t) {
+            Ok(between) => between,
+            Err(end) => return self.entry(end, middle, parts),
+        };
+        let after = i + 1;
         let (v0, v1): ([f32; N], [f32; N]) = (self.entry(i, middle, parts), self.entry(after, middle, parts));
         match self.interpolation {
             Interpolation::Step => v0,
@@ -71,19 +78,15 @@ impl Keys<'_> {
     }
 
     /// Rotation at time `t`, s, normalized.
-    ///
-    /// # Panics
-    ///
-    /// As [`Self::sample`].
     #[must_use]
     pub fn sample_rotation(&self, t: f32) -> [f32; 4] {
-        let after = self.times.partition_point(|key| *key <= t);
-        if self.interpolation != Interpolation::Linear || after == 0 || after == self.times.len() {
-            return quat::normalize(self.sample(t));
+        match self.span(t) {
+            Ok((i, tau, _)) if self.interpolation == Interpolation::Linear => {
+                let (a, b) = (self.entry(i, 0, 1), self.entry(i + 1, 0, 1));
+                quat::slerp(quat::normalize(a), quat::normalize(b), tau)
+            }
+            _ => quat::normalize(self.sample(t)),
         }
-        let tau = (t - self.times[after - 1]) / (self.times[after] - self.times[after - 1]);
-        let (a, b) = (self.entry(after - 1, 0, 1), self.entry(after, 0, 1));
-        quat::slerp(quat::normalize(a), quat::normalize(b), tau)
     }
 }
 

@@ -1,6 +1,7 @@
 //! One algorithm a file: free functions over slices, the equation above each.
 
 pub mod clip;
+pub mod cofactor;
 pub mod mlp;
 pub mod normal;
 pub mod skin;

@@ -26,9 +26,7 @@ pub struct Stencils<'a> {
 /// * `rest`: unit normals of all vertices, bind space.
 /// * `offsets`: of the moving points, bind space; a point beyond its end does not move.
 ///
-/// # Panics
-///
-/// If an index is out of range.
+/// A vertex beyond the end of a slice is left alone.
 pub fn turn(
     stencils: Stencils<'_>,
     point_of_vertex: &[u32],
@@ -39,13 +37,14 @@ pub fn turn(
     let offset = |p: u32| offsets.get(p as usize).copied().unwrap_or([0.0; 3]);
     for ((vertex, points), tangents) in stencils.vertices.iter().zip(stencils.points).zip(stencils.tangents) {
         let vertex = *vertex as usize;
-        let n = rest[vertex];
-        let own = vec3::dot(offset(point_of_vertex[vertex]), n);
+        let of_vertex = (rest.get(vertex), point_of_vertex.get(vertex), normals.get_mut(vertex));
+        let (Some(n), Some(point), Some(normal)) = of_vertex else { continue };
+        let (n, own) = (*n, vec3::dot(offset(*point), *n));
         let mut turned = n;
         for (p, g) in points.iter().zip(tangents) {
             turned = vec3::sub(turned, vec3::scale(*g, vec3::dot(offset(*p), n) - own));
         }
-        normals[vertex] = vec3::normalize_or(flush_all(turned), n);
+        *normal = vec3::normalize_or(flush_all(turned), n);
     }
 }
 

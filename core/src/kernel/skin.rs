@@ -7,86 +7,117 @@
 //!
 //! Influences are sorted by falling weight: the first is the dominant one, and the first zero ends a row.
 
-use crate::lanes::four::{self, Cofactors, Linear, Vectors, each, three};
-use crate::lanes::{F32x4, Lanes};
-use crate::math::float::max;
+use super::cofactor::{Cofactors, Linear};
+use crate::dispatch;
+use crate::lanes::block::{read, write};
+pub use crate::lanes::block::{BLOCK, Vectors};
+use crate::lanes::{Lanes, each, three};
+use crate::math::float::{max, sqrt};
 use crate::math::{quat, vec3};
 
 /// Rows of a joint's map, model from bind; the last column is the translation.
 pub type Rows = [[f32; 4]; 3];
 
-/// Linear parts of the maps of four points: columns of three components, a lane a point.
-pub type LinearBlock = [[[f32; 4]; 3]; 3];
+/// Linear parts of the maps of a block: columns.
+pub type LinearBlock = [Vectors; 3];
 
-/// Joint indices and weights, `stride` a point; weights fall and sum to 1.
+/// Joint indices and weights, `sets` of four a point; weights fall and sum to 1.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Influences<'a> {
-    /// Influences a point, at least 1.
-    pub stride: usize,
+    /// Sets a point, at least 1.
+    pub sets: usize,
     /// Rows of the palette.
-    pub joints: &'a [u16],
+    pub joints: &'a [[u16; 4]],
     /// Weight of each.
-    pub weights: &'a [f32],
+    pub weights: &'a [[f32; 4]],
 }
 
-impl Influences<'_> {
-    /// Influences of point `i` that weigh anything.
+impl<'a> Influences<'a> {
+    /// A set of point `i`; weightless for a point past the end.
     #[inline(always)]
-    fn row(&self, i: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
-        let range = i * self.stride..(i + 1) * self.stride;
-        let joints = self.joints[range.clone()].iter().map(|j| usize::from(*j));
-        joints.zip(self.weights[range].iter().copied()).take_while(|(_, w)| *w > 0.0)
+    fn set(&self, i: usize, set: usize) -> (&'a [u16; 4], &'a [f32; 4]) {
+        let at = i * self.sets + set;
+        match (self.joints.get(at), self.weights.get(at)) {
+            (Some(joints), Some(weights)) => (joints, weights),
+            _ => (&[0; 4], &[0.0; 4]),
+        }
     }
 
     /// Joint with the largest weight at point `i`.
     #[must_use]
     pub fn dominant(&self, i: usize) -> usize {
-        usize::from(self.joints[i * self.stride])
+        usize::from(self.set(i, 0).0[0])
     }
 }
 
-/// Rows of the blended map `B` of point `i`.
+/// Blended maps `B` of the points `point(0)` to `point(n − 1)`, to columns of linear part and translation.
+///
+/// A joint past the palette's end does not count.
 #[inline(always)]
-fn blend<L: Lanes>(palette: &[Rows], influences: &Influences<'_>, i: usize) -> [L; 3] {
-    let mut b = [L::splat(0.0); 3];
-    for (joint, weight) in influences.row(i) {
-        let (w, m) = (L::splat(weight), &palette[joint]);
-        b = three(|r| b[r] + w * L::from_array(m[r]));
+fn blend<L: Lanes>(
+    palette: &[Rows],
+    influences: &Influences<'_>,
+    (n, point): (usize, impl Fn(usize) -> usize),
+    columns: [&mut Vectors; 4],
+) {
+    for group in (0..BLOCK / 4).take(n.div_ceil(4)) {
+        let points = each(|lane| point((4 * group + lane).min(n - 1)));
+        let b = blend_four::<L>(palette, influences, points);
+        for r in 0..3 {
+            let rows = L::transpose(each(|lane| b[lane][r]));
+            for c in 0..4 {
+                columns[c][r].as_chunks_mut().0[group] = rows[c].to_array();
+            }
+        }
+    }
+}
+
+/// Rows of the maps of four points. A weight of 0 adds nothing: the longest row decides for all four.
+#[inline(always)]
+fn blend_four<L: Lanes>(palette: &[Rows], influences: &Influences<'_>, points: [usize; 4]) -> [[L; 3]; 4] {
+    let mut b = [[L::splat(0.0); 3]; 4];
+    for set in 0..influences.sets {
+        let rows = each(|lane| influences.set(points[lane], set));
+        for k in 0..4 {
+            let [x, y, z, w] = each(|lane| rows[lane].1[k].to_bits());
+            if x | y | z | w == 0 {
+                return b;
+            }
+            for lane in 0..4 {
+                let (joints, weights) = rows[lane];
+                if let Some(m) = palette.get(usize::from(joints[k])) {
+                    let w = L::splat(weights[k]);
+                    b[lane] = three(|r| b[lane][r] + w * L::from_array(m[r]));
+                }
+            }
+        }
     }
     b
 }
 
-/// Blended maps of four points.
-struct Blended<L> {
-    linear: Linear<L>,
-    translation: Vectors<L>,
+/// The vector of a lane.
+#[inline(always)]
+pub(crate) fn vector_of(v: &Vectors, lane: usize) -> [f32; 3] {
+    three(|r| v[r][lane])
 }
 
-impl<L: Lanes> Blended<L> {
-    #[inline(always)]
-    fn new(palette: &[Rows], influences: &Influences<'_>, points: [usize; 4]) -> Self {
-        let b = each(|i| blend::<L>(palette, influences, points[i]));
-        let rows = three(|r| L::transpose(each(|i| b[i][r])));
-        let column = |c: usize| three(|r| rows[r][c]);
-        Self { linear: three(column), translation: column(3) }
-    }
+/// The linear map of a lane.
+#[inline(always)]
+pub(crate) fn map_of(columns: &LinearBlock, lane: usize) -> Linear {
+    three(|c| vector_of(&columns[c], lane))
+}
 
-    #[inline(always)]
-    fn apply(&self, [x, y, z]: Vectors<L>) -> Vectors<L> {
-        let [a, b, c] = &self.linear;
-        three(|r| (a[r] * x + b[r] * y) + (c[r] * z + self.translation[r]))
-    }
+/// `M·p + t`.
+#[inline(always)]
+fn apply([a, b, c]: &Linear, t: [f32; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
+    three(|r| (a[r] * x + b[r] * y) + (c[r] * z + t[r]))
 }
 
 /// Skins points and keeps the linear parts of their blended maps.
 ///
 /// * `palette`: a map a joint.
-/// * `influences`, `rest` (bind space), `out` (model space): one a point.
-/// * `linear`: one a block of four points; in the last the last point fills what is left.
-///
-/// # Panics
-///
-/// If the lengths differ, or a joint index is out of range (a parsed asset holds neither).
+/// * `influences`, `rest` (bind space), `out` (model space): one a point; the shorter decides how many.
+/// * `linear`: one a block of points.
 pub fn skin(
     palette: &[Rows],
     influences: Influences<'_>,
@@ -94,36 +125,37 @@ pub fn skin(
     out: &mut [[f32; 3]],
     linear: &mut [LinearBlock],
 ) {
-    skin_with::<F32x4>(palette, influences, rest, out, linear);
+    dispatch::skin(palette, influences, rest, out, linear);
 }
 
 /// [`skin`] on a given lane type.
-pub(crate) fn skin_with<L: Lanes>(
+#[inline(always)]
+pub(crate) fn skin_any<L: Lanes>(
     palette: &[Rows],
     influences: Influences<'_>,
     rest: &[[f32; 3]],
     out: &mut [[f32; 3]],
     linear: &mut [LinearBlock],
 ) {
-    let n = rest.len();
-    assert!(out.len() == n && linear.len() == n.div_ceil(4), "skin: lengths differ");
-    for (k, linear) in linear.iter_mut().enumerate() {
-        let i = 4 * k;
-        let points = each(|lane| (i + lane).min(n - 1));
-        let blended = Blended::<L>::new(palette, &influences, points);
-        four::store(blended.apply(four::load(rest, i)), out, i);
-        *linear = three(|c| three(|r| blended.linear[c][r].to_array()));
+    let [mut t, mut p] = [[[0.0; BLOCK]; 3]; 2];
+    let blocks = rest.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).zip(linear);
+    for (start, ((rest, out), linear)) in (0..).step_by(BLOCK).zip(blocks) {
+        let [a, b, c] = linear;
+        let points = (rest.len(), |lane| start + lane);
+        blend::<L>(palette, &influences, points, [a, b, c, &mut t]);
+        read(rest, &mut p);
+        for lane in 0..BLOCK {
+            let moved = apply(&map_of(linear, lane), vector_of(&t, lane), vector_of(&p, lane));
+            (p[0][lane], p[1][lane], p[2][lane]) = moved.into();
+        }
+        write(&p, out);
     }
 }
 
 /// Skins the vertices of a surface with their normals; vertex `v` has the influences of point `point_of_vertex[v]`.
 ///
-/// `positions` and `normals` go in in bind space and come out in model space. A blended map that
-/// flattens a normal counts as the dominant joint's; one without a direction then too stays.
-///
-/// # Panics
-///
-/// If the lengths differ, or an index is out of range.
+/// `positions` and `normals` go in in bind space and come out in model space; the shortest slice decides how many.
+/// A blended map that flattens a normal counts as the dominant joint's; one without a direction then too stays.
 pub fn skin_surface(
     palette: &[Rows],
     influences: Influences<'_>,
@@ -131,41 +163,59 @@ pub fn skin_surface(
     positions: &mut [[f32; 3]],
     normals: &mut [[f32; 3]],
 ) {
-    skin_surface_with::<F32x4>(palette, influences, point_of_vertex, positions, normals);
+    dispatch::skin_surface(palette, influences, point_of_vertex, positions, normals);
 }
 
 /// [`skin_surface`] on a given lane type.
-pub(crate) fn skin_surface_with<L: Lanes>(
+#[inline(always)]
+pub(crate) fn skin_surface_any<L: Lanes>(
     palette: &[Rows],
     influences: Influences<'_>,
     point_of_vertex: &[u32],
     positions: &mut [[f32; 3]],
     normals: &mut [[f32; 3]],
 ) {
-    let n = point_of_vertex.len();
-    assert!(positions.len() == n && normals.len() == n, "skin: lengths differ");
     // |cof(B)·n|² is of the order of the fourth power of the columns.
-    let least = L::splat(1e-12 * longest_square(palette) * longest_square(palette));
-    for i in (0..n).step_by(4) {
-        let points = four::read(point_of_vertex, i);
-        let points = each(|lane| points[lane] as usize);
-        let blended = Blended::<L>::new(palette, &influences, points);
-        four::store(blended.apply(four::load(positions, i)), positions, i);
-        let dominant = |lane: usize| linear_of(&palette[influences.dominant(points[lane])]);
-        let (cofactors, n) = (Cofactors::new(&blended.linear), four::load(normals, i));
-        let (mut turned, usable) = turn_normals(&cofactors, &n, least);
-        if !L::all(usable) {
-            let cofactors = Cofactors::replaced(&blended.linear, usable, &dominant);
-            turned = turn_normals(&cofactors, &n, L::splat(0.0)).0;
+    let least = 1e-12 * longest_square(palette) * longest_square(palette);
+    let ([mut t, mut p, mut n], mut linear) = ([[[0.0; BLOCK]; 3]; 3], [[[0.0; BLOCK]; 3]; 3]);
+    let mut usable = [true; BLOCK];
+    let surface = positions.chunks_mut(BLOCK).zip(normals.chunks_mut(BLOCK));
+    for (points, (positions, normals)) in point_of_vertex.chunks(BLOCK).zip(surface) {
+        let point = |lane| points.get(lane).map_or(0, |point| *point as usize);
+        let [a, b, c] = &mut linear;
+        blend::<L>(palette, &influences, (points.len(), point), [a, b, c, &mut t]);
+        read(positions, &mut p);
+        read(normals, &mut n);
+        for lane in 0..BLOCK {
+            let m = map_of(&linear, lane);
+            let moved = apply(&m, vector_of(&t, lane), vector_of(&p, lane));
+            let (turned, fine) = turn_normal(&m, vector_of(&n, lane), least);
+            (p[0][lane], p[1][lane], p[2][lane]) = moved.into();
+            (n[0][lane], n[1][lane], n[2][lane]) = turned.into();
+            usable[lane] = fine;
         }
-        four::store(turned, normals, i);
+        write(&p, positions);
+        write(&n, normals);
+        if usable != [true; BLOCK] {
+            for (lane, normal) in (0..BLOCK).zip(normals).filter(|(lane, _)| !usable[*lane]) {
+                let m = dominant_map(palette, &influences, point(lane));
+                *normal = turn_normal(&m, *normal, 0.0).0;
+            }
+        }
     }
 }
 
 /// Columns of the linear part of a joint's map.
-#[must_use]
-pub fn linear_of(m: &Rows) -> [[f32; 3]; 3] {
-    [0, 1, 2].map(|c| m.map(|row| row[c]))
+#[inline(always)]
+fn linear_of(m: &Rows) -> Linear {
+    three(|c| three(|r| m[r][c]))
+}
+
+/// The linear map of the joint with the largest weight at point `i`. Rare, and kept out of the way.
+#[cold]
+#[inline(never)]
+pub(crate) fn dominant_map(palette: &[Rows], influences: &Influences<'_>, i: usize) -> Linear {
+    palette.get(influences.dominant(i)).map_or([[0.0; 3]; 3], linear_of)
 }
 
 /// Square of the longest column of the linear parts.
@@ -174,29 +224,26 @@ fn longest_square(palette: &[Rows]) -> f32 {
     columns.fold(0.0, |longest, c| max(longest, vec3::dot(c, c)))
 }
 
-/// Normals `n` turned, and where they are usable: finite, and their squares above `least`. Elsewhere they stay.
+/// A normal turned, and whether it is usable: finite, and its square above `least`. Otherwise it stays.
 #[inline(always)]
-fn turn_normals<L: Lanes>(cofactors: &Cofactors<L>, n: &Vectors<L>, least: L) -> (Vectors<L>, L::Mask) {
-    let (zero, one) = (L::splat(0.0), L::splat(1.0));
-    let turned = four::mul(&cofactors.columns, n);
-    let square = four::dot(&turned, &turned);
-    let sign = L::select(cofactors.determinant.lt(zero), zero - one, one);
-    let (scale, usable) = (sign / square.sqrt(), least.lt(square) & square.lt(L::splat(f32::INFINITY)));
-    (three(|k| L::select(usable, turned[k] * scale, n[k])), usable)
+fn turn_normal(m: &Linear, n: [f32; 3], least: f32) -> ([f32; 3], bool) {
+    let cofactors = Cofactors::new(m);
+    let turned = cofactors.turn(n);
+    let square = vec3::dot(turned, turned);
+    let sign = if cofactors.determinant < 0.0 { -1.0 } else { 1.0 };
+    let (scale, usable) = (sign / sqrt(square), (least < square) & (square < f32::INFINITY));
+    (three(|k| if usable { turned[k] * scale } else { n[k] }), usable)
 }
 
 /// Blended rotation of point `i` from the joints' unit quaternions; the dominant joint's where the sum vanishes.
-///
-/// # Panics
-///
-/// If an index is out of range.
 #[must_use]
 pub fn blend_rotation(rotations: &[[f32; 4]], influences: Influences<'_>, i: usize) -> [f32; 4] {
-    let dominant = rotations[influences.dominant(i)];
+    let dominant = rotations.get(influences.dominant(i)).copied().unwrap_or(quat::IDENTITY);
     let mut sum = [0.0_f32; 4];
-    for (joint, weight) in influences.row(i) {
-        let q = rotations[joint];
-        let w = if quat::dot(q, dominant) < 0.0 { -weight } else { weight };
+    let rows = (0..influences.sets).map(|set| influences.set(i, set));
+    for (joint, weight) in rows.flat_map(|(joints, weights)| joints.iter().zip(weights)) {
+        let q = rotations.get(usize::from(*joint)).copied().unwrap_or_default();
+        let w = if quat::dot(q, dominant) < 0.0 { -weight } else { *weight };
         sum = core::array::from_fn(|c| sum[c] + w * q[c]);
     }
     if quat::dot(sum, sum) < 1e-6 { dominant } else { quat::normalize(sum) }
@@ -218,8 +265,8 @@ mod tests {
     #[test]
     fn a_rigid_joint_moves_points_rigidly() {
         let m = affine::from_trs([1.0, -2.0, 0.5], turn(0.8), [1.0; 3]);
-        let influences = Influences { stride: 4, joints: &[0, 0, 0, 0], weights: &[1.0, 0.0, 0.0, 0.0] };
-        let (mut out, mut linear) = ([[0.0; 3]], [[[[0.0; 4]; 3]; 3]]);
+        let influences = Influences { sets: 1, joints: &[[0; 4]], weights: &[[1.0, 0.0, 0.0, 0.0]] };
+        let (mut out, mut linear) = ([[0.0; 3]], [[[[0.0; BLOCK]; 3]; 3]]);
         skin(&[to_rows(&m)], influences, &[[0.3, 0.2, -0.1]], &mut out, &mut linear);
         assert_eq!(out[0], affine::transform(&m, [0.3, 0.2, -0.1]));
         assert_eq!(linear[0].map(|c| c.map(|lanes| lanes[0])), [m[0], m[1], m[2]]);
@@ -227,7 +274,7 @@ mod tests {
 
     #[test]
     fn normals_follow_the_inverse_transpose_and_mirrors() {
-        let influences = Influences { stride: 1, joints: &[0], weights: &[1.0] };
+        let influences = Influences { sets: 1, joints: &[[0; 4]], weights: &[[1.0, 0.0, 0.0, 0.0]] };
         for (scale, want) in [([2.0, 1.0, 1.0], [1.0, 2.0]), ([-2.0, 1.0, 1.0], [-1.0, 2.0])] {
             let m = affine::from_trs([0.0; 3], quat::IDENTITY, scale);
             let (mut p, mut n) = ([[0.0; 3]], [vec3::normalize_or([1.0, 1.0, 0.0], [0.0; 3])]);
@@ -242,7 +289,7 @@ mod tests {
         // Half a turn apart: the blend collapses the plane to a line.
         let half = affine::from_trs([0.0; 3], turn(core::f32::consts::PI), [1.0; 3]);
         let palette = [to_rows(&affine::IDENTITY), to_rows(&half)];
-        let influences = Influences { stride: 2, joints: &[0, 1], weights: &[0.5, 0.5] };
+        let influences = Influences { sets: 1, joints: &[[0, 1, 0, 0]], weights: &[[0.5, 0.5, 0.0, 0.0]] };
         let (mut p, mut n) = ([[1.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]]);
         skin_surface(&palette, influences, &[0], &mut p, &mut n);
         assert_eq!(n[0], [1.0, 0.0, 0.0]);
@@ -251,7 +298,7 @@ mod tests {
     #[test]
     fn antipodal_quaternions_blend_as_the_same_rotation() {
         let (a, b) = (turn(0.4), turn(0.6));
-        let influences = Influences { stride: 2, joints: &[0, 1], weights: &[0.5, 0.5] };
+        let influences = Influences { sets: 1, joints: &[[0, 1, 0, 0]], weights: &[[0.5, 0.5, 0.0, 0.0]] };
         let plain = blend_rotation(&[a, b], influences, 0);
         let flipped = blend_rotation(&[a, b.map(|c| -c)], influences, 0);
         assert_eq!(plain, flipped);
@@ -260,57 +307,50 @@ mod tests {
         assert_eq!(opposite, turn(0.0));
     }
 
-    #[test]
-    fn lanes_agree_with_scalar_bit_for_bit() {
-        use crate::lanes::Scalar;
-        let palette: Vec<Rows> = (0..7_u8)
-            .map(|i| {
-                to_rows(&affine::from_trs([f32::from(i), 0.1, -0.2], turn(0.3 * f32::from(i)), [1.1; 3]))
-            })
-            .collect();
-        for n in 0..33_usize {
-            let joints: Vec<u16> = (0..4 * n).map(|i| u16::try_from(i * 5 % 7).unwrap()).collect();
-            let weights: Vec<f32> = (0..n).flat_map(|_| [0.4, 0.3, 0.2, 0.1]).collect();
-            let rest = vec![[0.3, -0.7, 0.9]; n];
-            let influences = Influences { stride: 4, joints: &joints, weights: &weights };
-            let mut a = (vec![[0.0; 3]; n], vec![[[[0.0; 4]; 3]; 3]; n.div_ceil(4)]);
-            let mut b = a.clone();
-            skin_with::<F32x4>(&palette, influences, &rest, &mut a.0, &mut a.1);
-            skin_with::<Scalar>(&palette, influences, &rest, &mut b.0, &mut b.1);
-            assert_eq!(a, b);
-        }
-    }
-
     type Kernel = fn(&[Rows], Influences<'_>, &[u32], &mut [[f32; 3]], &mut [[f32; 3]]);
 
-    /// A vertex has the same bits in a block, in the tail and on scalar lanes, beside a flattened blend too.
+    /// A vertex has the same bits in a block, in the tail and alone, in each copy that this machine can run and on
+    /// scalar lanes, beside a flattened blend too.
     #[test]
-    fn a_normal_does_not_depend_on_its_place() {
+    fn a_vertex_does_not_depend_on_its_place() {
         use crate::lanes::Scalar;
-        let turned = |i: u8| affine::from_trs([0.0; 3], turn(0.7 * f32::from(i)), [1.0, 1.3, -0.8]);
+        let turned =
+            |i: u8| affine::from_trs([f32::from(i), 0.1, -0.2], turn(0.7 * f32::from(i)), [1.0, 1.3, -0.8]);
         let mut palette: Vec<Rows> = (0..5).map(|i| to_rows(&turned(i))).collect();
         palette.push([[0.0; 4]; 3]);
-        let n = 23_u16;
-        let joints: Vec<u16> = (0..2 * n).map(|i| i * 7 % 6).collect();
-        let weights: Vec<f32> =
-            (0..n).flat_map(|i| if i % 6 == 5 { [1.0, 0.0] } else { [0.6, 0.4] }).collect();
-        let influences = Influences { stride: 2, joints: &joints, weights: &weights };
+        let n = 67_u16;
+        let joints: Vec<[u16; 4]> = (0..2 * n).map(|i| [0, 3, 2, 4].map(|k| (k + i * 7) % 6)).collect();
+        let row = |i: u16| match i % 6 {
+            5 => [[1.0, 0.0, 0.0, 0.0], [0.0; 4]],
+            4 => [[0.4, 0.2, 0.1, 0.1], [0.1, 0.1, 0.0, 0.0]],
+            _ => [[0.6, 0.4, 0.0, 0.0], [0.0; 4]],
+        };
+        let weights: Vec<[f32; 4]> = (0..n).flat_map(row).collect();
+        let influences = Influences { sets: 2, joints: &joints, weights: &weights };
         let rest: Vec<[f32; 3]> = (0..n).map(|i| [0.3, -0.02 * f32::from(i), 0.9]).collect();
-        let run = |points: &[u32], kernel: Kernel| {
+        let run = |points: &[u32], kernel: &dyn Fn(&[u32], &mut [[f32; 3]], &mut [[f32; 3]])| {
             let mut p: Vec<[f32; 3]> = points.iter().map(|i| rest[*i as usize]).collect();
             let mut n: Vec<[f32; 3]> = p.iter().map(|p| vec3::normalize_or(*p, [0.0; 3])).collect();
-            kernel(&palette, influences, points, &mut p, &mut n);
-            p.concat().iter().chain(n.concat().iter()).map(|x| x.to_bits()).collect::<Vec<_>>()
+            kernel(points, &mut p, &mut n);
+            p.into_iter().zip(n).map(|vertex| <[_; 2]>::from(vertex).map(|v| v.map(f32::to_bits)))
         };
+        let plain: Kernel = skin_surface_any::<Scalar>;
         let all: Vec<u32> = (0..u32::from(n)).collect();
-        for from in 0..5 {
-            let part = run(&all[from..], skin_surface_with::<F32x4>);
-            assert_eq!(part, run(&all[from..], skin_surface_with::<Scalar>), "from {from}");
-            for (i, vertex) in all[from..].iter().enumerate() {
-                let alone = run(&[*vertex], skin_surface_with::<F32x4>);
-                let half = part.len() / 2;
-                let whole = [&part[3 * i..3 * i + 3], &part[half + 3 * i..half + 3 * i + 3]].concat();
-                assert_eq!(alone, whole, "vertex {vertex} from {from}");
+        let alone = |vertex: &u32| run(&[*vertex], &|v, p, n| plain(&palette, influences, v, p, n)).next();
+        let want: Vec<_> = all.iter().filter_map(alone).collect();
+        for count in 0..all.len() {
+            let from = all.len() - count;
+            for level in dispatch::levels() {
+                let found: Vec<_> = run(&all[from..], &|v, p, n| {
+                    dispatch::skin_surface_at(level, &palette, influences, v, p, n);
+                })
+                .collect();
+                assert_eq!(found, want[from..], "{level:?}: {count} vertices");
+                let (mut out, mut linear) = (vec![[9.0; 3]; count], vec![[[[0.0; BLOCK]; 3]; 3]; 3]);
+                dispatch::skin_at(level, &palette, influences, &rest[..count], &mut out, &mut linear);
+                let bits: Vec<_> = out.iter().map(|p| p.map(f32::to_bits)).collect();
+                let first: Vec<_> = want.iter().take(count).map(|[p, _]| *p).collect();
+                assert_eq!(bits, first, "{level:?}: {count} points");
             }
         }
     }

@@ -7,10 +7,14 @@
 //! `w` is the point's softness times its region's gain, `L` the region's largest offset: small
 //! offsets pass unchanged, none grows beyond `w·L`, and there is no kink between.
 
-use super::skin::{Influences, LinearBlock, Rows, linear_of};
+use super::cofactor::{Cofactors, Linear};
+use super::skin::{BLOCK, Influences, LinearBlock, Rows, dominant_map, map_of, vector_of};
 use super::tiny::LEAST;
-use crate::lanes::four::{self, Cofactors, each, three};
-use crate::lanes::{F32x4, Lanes};
+use crate::dispatch;
+use crate::lanes::block::{read, write};
+use crate::lanes::three;
+use crate::math::float::{abs, sqrt};
+use crate::math::vec3::dot;
 
 /// An offset is shown below this, model units; a component beyond is left out.
 pub const LARGEST: f32 = 1e18;
@@ -24,57 +28,87 @@ pub struct Limit {
     pub inverse_square: f32,
 }
 
+/// Softness and region of points, and what the regions show.
+#[derive(Clone, Copy, Debug)]
+pub struct Tissue<'a> {
+    /// Share of the offset that is shown, one a point.
+    pub softness: &'a [f32],
+    /// One a point.
+    pub region: &'a [u8],
+    /// One a region.
+    pub limits: &'a [Limit],
+}
+
 /// Takes the offsets `y` (model space) of points to bind space.
 ///
 /// * `palette`, `influences`: as in [`super::skin::skin`]; read only where a blended map has no inverse.
 /// * `linear`: blended maps, as [`super::skin::skin`] leaves them.
-/// * `softness`, `region`: one a point; `limits` is indexed by region.
-/// * `out`: one a point; zero where the dominant joint's map has no inverse either.
-///
-/// # Panics
-///
-/// If the lengths differ, or an index is out of range.
+/// * `out`: one a point; zero where the dominant joint's map has no inverse either. The shortest slice decides how many.
 pub fn unskin(
     palette: &[Rows],
     influences: Influences<'_>,
     linear: &[LinearBlock],
     y: &[[f32; 3]],
-    (softness, region): (&[f32], &[u8]),
-    limits: &[Limit],
+    tissue: Tissue<'_>,
     out: &mut [[f32; 3]],
 ) {
-    let n = y.len();
-    let lengths = [softness.len(), region.len(), out.len(), n];
-    assert!(lengths == [n; 4] && linear.len() == n.div_ceil(4), "unskin: lengths differ");
-    for (k, linear) in linear.iter().enumerate() {
-        let i = 4 * k;
-        let region = four::read(region, i);
-        let limit = each(|lane| limits[usize::from(region[lane])]);
-        let gain = F32x4::from_array(each(|lane| limit[lane].gain));
-        let inverse_square = F32x4::from_array(each(|lane| limit[lane].inverse_square));
-        let dominant = |lane: usize| linear_of(&palette[influences.dominant((i + lane).min(n - 1))]);
-        let linear = three(|c| three(|r| F32x4::from_array(linear[c][r])));
-        let Cofactors { columns, determinant, regular } = Cofactors::or_else(&linear, dominant);
-        let [zero, one, least, most] = [0.0, 1.0, LEAST, LARGEST].map(F32x4::splat);
-        let y = four::load(y, i);
-        let stretch = (one + four::dot(&y, &y) * inverse_square).sqrt();
-        let factor = F32x4::from_array(four::read(softness, i)) * gain / (stretch * determinant);
-        let shown = three(|c| four::dot(&columns[c], &y) * factor);
-        // A product of numbers as large as are let in may overflow, one of small ones underflow.
-        let shown = three(|c| {
-            let size = shown[c].abs();
-            F32x4::select(regular & size.lt(most) & least.lt(size), shown[c], zero)
-        });
-        four::store(shown, out, i);
+    dispatch::unskin(palette, influences, linear, y, tissue, out);
+}
+
+/// The body of each copy of [`unskin`].
+#[inline(always)]
+pub(crate) fn unskin_any(
+    palette: &[Rows],
+    influences: Influences<'_>,
+    linear: &[LinearBlock],
+    y: &[[f32; 3]],
+    tissue: Tissue<'_>,
+    out: &mut [[f32; 3]],
+) {
+    let (mut soft, mut inverse_square) = ([0.0; BLOCK], [0.0; BLOCK]);
+    let (mut v, mut regular) = ([[0.0; BLOCK]; 3], [true; BLOCK]);
+    let points = y.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).zip(linear);
+    let tissues = tissue.softness.chunks(BLOCK).zip(tissue.region.chunks(BLOCK));
+    for (start, (((y, out), linear), (softness, region))) in (0..).step_by(BLOCK).zip(points.zip(tissues)) {
+        for (lane, (softness, region)) in (0..BLOCK).zip(softness.iter().zip(region)) {
+            if let Some(limit) = tissue.limits.get(usize::from(*region)) {
+                (soft[lane], inverse_square[lane]) = (softness * limit.gain, limit.inverse_square);
+            }
+        }
+        read(y, &mut v);
+        for lane in 0..BLOCK {
+            let (m, y) = (map_of(linear, lane), vector_of(&v, lane));
+            let (shown, fine) = show(&m, y, soft[lane], inverse_square[lane]);
+            (v[0][lane], v[1][lane], v[2][lane]) = shown.into();
+            regular[lane] = fine;
+        }
+        write(&v, out);
+        if regular != [true; BLOCK] {
+            for (lane, (y, out)) in (0..BLOCK).zip(y.iter().zip(out)).filter(|(lane, _)| !regular[*lane]) {
+                let m = dominant_map(palette, &influences, start + lane);
+                *out = show(&m, *y, soft[lane], inverse_square[lane]).0;
+            }
+        }
     }
+}
+
+/// `o` of one point, `soft` the product of softness and gain, and whether its map has an inverse; zero if not.
+#[inline(always)]
+fn show(m: &Linear, y: [f32; 3], soft: f32, inverse_square: f32) -> ([f32; 3], bool) {
+    let cofactors = Cofactors::new(m);
+    let regular = cofactors.regular(m);
+    let stretch = sqrt(1.0 + dot(y, y) * inverse_square);
+    let factor = soft / (stretch * cofactors.determinant);
+    // A product of numbers as large as are let in may overflow, one of small ones underflow.
+    let bounded = |x: f32| if regular & (abs(x) < LARGEST) & (LEAST < abs(x)) { x } else { 0.0 };
+    (three(|c| bounded(dot(cofactors.columns[c], y) * factor)), regular)
 }
 
 #[cfg(test)]
 mod tests {
     extern crate std;
     use super::*;
-    use crate::math::float::sqrt;
-    use crate::math::{affine, vec3};
+    use crate::math::affine;
     use std::vec::Vec;
 
     const LIMITS: [Limit; 2] =
@@ -87,21 +121,29 @@ mod tests {
 
     fn run(n: u8, singular: Option<u8>) -> Vec<[f32; 3]> {
         let map = |i: u8| if Some(i) == singular { [[0.0; 3]; 4] } else { matrix(i) };
-        let block = |k: u8| -> LinearBlock {
-            let lanes = [0, 1, 2, 3].map(|i| map((4 * k + i).min(n - 1)));
-            [0, 1, 2].map(|c| [0, 1, 2].map(|r| lanes.map(|m| m[c][r])))
+        let lanes: Vec<_> = (0..n).map(map).collect();
+        let lane = |i: usize, c: usize, r: usize| lanes.get(i).map_or(0.0, |m| m[c][r]);
+        let block = |k: usize| -> LinearBlock {
+            [0, 1, 2].map(|c| [0, 1, 2].map(|r| core::array::from_fn(|i| lane(k * BLOCK + i, c, r))))
         };
-        let linear: Vec<_> = (0..n.div_ceil(4)).map(block).collect();
+        let linear: Vec<_> = (0..usize::from(n).div_ceil(BLOCK)).map(block).collect();
         let identity = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
-        let joints: Vec<u16> = (0..n).map(|_| 0).collect();
-        let weights: Vec<f32> = (0..n).map(|_| 1.0).collect();
-        let influences = Influences { stride: 1, joints: &joints, weights: &weights };
+        let (joints, weights) =
+            (std::vec![[0; 4]; usize::from(n)], std::vec![[1.0, 0.0, 0.0, 0.0]; usize::from(n)]);
+        let influences = Influences { sets: 1, joints: &joints, weights: &weights };
         let y: Vec<[f32; 3]> = (0..n).map(|i| [0.1, -0.02 * f32::from(i), 0.3]).collect();
         let softness: Vec<f32> = (0..n).map(|_| 0.75).collect();
         let region: Vec<u8> = (0..n).map(|i| i % 2).collect();
-        let mut out = std::vec![[f32::NAN; 3]; usize::from(n)];
-        unskin(&[identity], influences, &linear, &y, (&softness, &region), &LIMITS, &mut out);
-        out
+        let tissue = Tissue { softness: &softness, region: &region, limits: &LIMITS };
+        let one = |level| {
+            let mut out = std::vec![[f32::NAN; 3]; usize::from(n)];
+            dispatch::unskin_at(level, &[identity], influences, &linear, &y, tissue, &mut out);
+            out
+        };
+        let mut all = dispatch::levels().map(one);
+        let first = all.next().unwrap_or_default();
+        all.for_each(|other| assert_eq!(first, other, "copies agree"));
+        first
     }
 
     #[test]
@@ -109,7 +151,7 @@ mod tests {
         for (i, o) in (0..11).zip(run(11, None)) {
             let y = [0.1, -0.02 * f32::from(i), 0.3];
             let back = affine::rotate(&matrix(i), o);
-            let factor = if i % 2 == 0 { 0.75 } else { 0.375 / sqrt(1.0 + 4.0 * vec3::dot(y, y)) };
+            let factor = if i % 2 == 0 { 0.75 } else { 0.375 / sqrt(1.0 + 4.0 * dot(y, y)) };
             for k in 0..3 {
                 assert!((back[k] - factor * y[k]).abs() < 1e-6, "{i}: {back:?}");
             }
@@ -119,12 +161,15 @@ mod tests {
     /// A point's bits do not depend on its place in a block.
     #[test]
     fn bits_do_not_depend_on_the_count_or_on_a_singular_neighbour() {
-        let all = run(12, None);
-        for n in 0..12 {
+        let all = run(67, None);
+        for n in 0..67 {
             assert_eq!(run(n, None), all[..usize::from(n)], "{n} points");
         }
-        let beside = run(12, Some(5));
-        assert_eq!(beside[4], all[4]);
-        assert!(beside[5].iter().all(|x| x.is_finite()), "dominant joint stands in");
+        for singular in [5, 40, 66] {
+            let beside = run(67, Some(singular));
+            let at = usize::from(singular);
+            assert_eq!((&beside[..at], &beside[at + 1..]), (&all[..at], &all[at + 1..]), "neighbors");
+            assert!(beside[at].iter().all(|x| x.is_finite() && *x != 0.0), "dominant joint stands in");
+        }
     }
 }

@@ -2,10 +2,8 @@
 
 #![allow(dead_code, reason = "where there are vector registers only tests use it")]
 
-use super::Lanes;
-use super::four::each;
-use crate::math::float;
-use core::ops::{Add, BitAnd, Div, Mul, Sub};
+use super::{Lanes, each};
+use core::ops::{Add, Mul};
 
 /// Four lanes as an array.
 #[derive(Clone, Copy, Debug)]
@@ -26,14 +24,6 @@ impl Add for Scalar {
     }
 }
 
-impl Sub for Scalar {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, rhs: Self) -> Self {
-        self.zip(rhs, |a, b| a - b)
-    }
-}
-
 impl Mul for Scalar {
     type Output = Self;
     #[inline(always)]
@@ -42,29 +32,7 @@ impl Mul for Scalar {
     }
 }
 
-impl Div for Scalar {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, rhs: Self) -> Self {
-        self.zip(rhs, |a, b| a / b)
-    }
-}
-
-/// Four truth values.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Mask([bool; 4]);
-
-impl BitAnd for Mask {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, rhs: Self) -> Self {
-        Self(each(|i| self.0[i] && rhs.0[i]))
-    }
-}
-
 impl Lanes for Scalar {
-    type Mask = Mask;
-
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self([x; 4])
@@ -78,31 +46,6 @@ impl Lanes for Scalar {
     #[inline(always)]
     fn to_array(self) -> [f32; 4] {
         self.0
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(each(|i| float::sqrt(self.0[i])))
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(each(|i| float::abs(self.0[i])))
-    }
-
-    #[inline(always)]
-    fn lt(self, other: Self) -> Mask {
-        Mask(each(|i| self.0[i] < other.0[i]))
-    }
-
-    #[inline(always)]
-    fn select(mask: Mask, value: Self, otherwise: Self) -> Self {
-        Self(each(|i| if mask.0[i] { value.0[i] } else { otherwise.0[i] }))
-    }
-
-    #[inline(always)]
-    fn all(mask: Mask) -> bool {
-        mask.0[0] && mask.0[1] && mask.0[2] && mask.0[3]
     }
 
     #[inline(always)]

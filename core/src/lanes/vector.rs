@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "where there are no vector registers only tests use it")]
 
 use super::Lanes;
-use core::ops::{Add, BitAnd, Div, Mul, Sub};
+use core::ops::{Add, Mul};
 use wide::f32x4;
 
 /// Four lanes in a vector register.
@@ -18,14 +18,6 @@ impl Add for Vector {
     }
 }
 
-impl Sub for Vector {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, rhs: Self) -> Self {
-        Self(self.0 - rhs.0)
-    }
-}
-
 impl Mul for Vector {
     type Output = Self;
     #[inline(always)]
@@ -34,29 +26,7 @@ impl Mul for Vector {
     }
 }
 
-impl Div for Vector {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, rhs: Self) -> Self {
-        Self(self.0 / rhs.0)
-    }
-}
-
-/// All bits of a lane, or none.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Mask(f32x4);
-
-impl BitAnd for Mask {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, rhs: Self) -> Self {
-        Self(self.0 & rhs.0)
-    }
-}
-
 impl Lanes for Vector {
-    type Mask = Mask;
-
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self(f32x4::splat(x))
@@ -70,31 +40,6 @@ impl Lanes for Vector {
     #[inline(always)]
     fn to_array(self) -> [f32; 4] {
         self.0.to_array()
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt())
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.abs())
-    }
-
-    #[inline(always)]
-    fn lt(self, other: Self) -> Mask {
-        Mask(self.0.simd_lt(other.0))
-    }
-
-    #[inline(always)]
-    fn select(mask: Mask, value: Self, otherwise: Self) -> Self {
-        Self(mask.0.bitselect(value.0, otherwise.0))
-    }
-
-    #[inline(always)]
-    fn all(mask: Mask) -> bool {
-        mask.0.all()
     }
 
     #[inline(always)]

@@ -18,24 +18,17 @@ pub struct Surface<'a> {
     pub stencils: Stencils<'a>,
 }
 
-/// Fills both buffers with the rest shape.
-///
-/// # Panics
-///
-/// If the lengths differ.
+/// Fills both buffers with the rest shape, as far as they reach.
 pub fn rest(surface: Surface<'_>, positions: &mut [[f32; 3]], normals: &mut [[f32; 3]]) {
-    assert!(positions.len() == surface.point_of_vertex.len(), "embed: lengths differ");
     for (position, point) in positions.iter_mut().zip(surface.point_of_vertex) {
-        *position = surface.rest[*point as usize];
+        *position = surface.rest.get(*point as usize).copied().unwrap_or(*position);
     }
-    normals.copy_from_slice(surface.normals);
+    normals.iter_mut().zip(surface.normals).for_each(|(normal, rest)| *normal = *rest);
 }
 
 /// Writes the positions and normals that `offsets` (bind space, one a moving point) change.
 ///
-/// # Panics
-///
-/// If an index is out of range.
+/// A vertex with an index out of range (a parsed asset holds none) is left alone.
 pub fn embed(
     surface: Surface<'_>,
     offsets: &[[f32; 3]],
@@ -43,8 +36,12 @@ pub fn embed(
     normals: &mut [[f32; 3]],
 ) {
     for vertex in surface.moved {
-        let point = surface.point_of_vertex[*vertex as usize] as usize;
-        positions[*vertex as usize] = vec3::add(surface.rest[point], offsets[point]);
+        let vertex = *vertex as usize;
+        let Some(point) = surface.point_of_vertex.get(vertex).map(|point| *point as usize) else { continue };
+        let moved = (positions.get_mut(vertex), surface.rest.get(point), offsets.get(point));
+        if let (Some(position), Some(rest), Some(offset)) = moved {
+            *position = vec3::add(*rest, *offset);
+        }
     }
     normal::turn(surface.stencils, surface.point_of_vertex, surface.normals, offsets, normals);
 }

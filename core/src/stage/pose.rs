@@ -77,14 +77,9 @@ impl Root {
     }
 }
 
-/// The palette of a pose: `model_from_bind = root_from_joint · joint_from_bind`, a joint each.
-///
-/// # Panics
-///
-/// If the lengths differ.
+/// The palette of a pose: `model_from_bind = root_from_joint · joint_from_bind`, a joint each; the shortest slice
+/// decides how many.
 pub fn palette(root_from_joint: &[Affine], joint_from_bind: &[Affine], out: &mut [Rows]) {
-    let n = out.len();
-    assert!(root_from_joint.len() == n && joint_from_bind.len() == n, "pose: lengths differ");
     for ((a, b), out) in root_from_joint.iter().zip(joint_from_bind).zip(out) {
         *out = affine::to_rows(&flush_map(&affine::mul(a, b)));
     }
@@ -105,9 +100,7 @@ pub struct Skeleton<'a> {
 ///
 /// * `local`: workspace, ten floats a node; `model`: workspace, a map a node.
 ///
-/// # Panics
-///
-/// If the lengths differ, or an index is out of range (a parsed asset holds neither).
+/// An index out of range (a parsed asset holds none) is passed over.
 pub fn sample(
     skeleton: Skeleton<'_>,
     channels: Channels<'_>,
@@ -115,25 +108,23 @@ pub fn sample(
     out: &mut [Affine],
     (local, model): (&mut [[f32; 10]], &mut [Affine]),
 ) {
-    assert!(out.len() == skeleton.joint_node.len(), "pose: lengths differ");
-    local.copy_from_slice(skeleton.rest);
+    local.iter_mut().zip(skeleton.rest).for_each(|(local, rest)| *local = *rest);
     for (node, property, keys) in channels.rows.iter().filter_map(|row| channels.channel(row)) {
-        let trs = &mut local[node];
+        let Some(trs) = local.get_mut(node) else { continue };
         match property {
             Property::Translation => trs[..3].copy_from_slice(&flush_all(keys.sample::<3>(t))),
             Property::Rotation => trs[3..7].copy_from_slice(&flush_all(keys.sample_rotation(t))),
             Property::Scale => trs[7..].copy_from_slice(&flush_all(keys.sample::<3>(t))),
         }
     }
-    for (i, [tx, ty, tz, qx, qy, qz, qw, sx, sy, sz]) in local.iter().copied().enumerate() {
+    for (i, (local, parent)) in local.iter().zip(skeleton.parents).enumerate() {
+        let [tx, ty, tz, qx, qy, qz, qw, sx, sy, sz] = *local;
         let map = affine::from_trs([tx, ty, tz], [qx, qy, qz, qw], [sx, sy, sz]);
-        model[i] = match model[..i].get(skeleton.parents[i] as usize) {
-            Some(parent) => affine::mul(parent, &map),
-            None => map,
-        };
+        let Some((before, [model, ..])) = model.split_at_mut_checked(i) else { break };
+        *model = before.get(*parent as usize).map_or(map, |parent| affine::mul(parent, &map));
     }
     for (out, node) in out.iter_mut().zip(skeleton.joint_node) {
-        *out = model[*node as usize];
+        *out = model.get(*node as usize).copied().unwrap_or(*out);
     }
 }
 

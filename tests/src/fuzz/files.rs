@@ -52,7 +52,7 @@ fn live(c: &mut Character<'_>) {
     assert_state_returns(c);
     let vertices = c.positions().len();
     let (mut positions, mut normals) = (vec![[0.0; 3]; vertices], vec![[0.0; 3]; vertices]);
-    c.skin_surface(true, &mut positions, &mut normals);
+    assert_eq!(c.skin_surface(true, &mut positions, &mut normals), Ok(()), "buffers of its length");
     assert!(positions.iter().chain(&normals).flatten().all(|x| x.is_finite()), "skinned");
 }
 

@@ -99,13 +99,14 @@ fn fitted(meta: &Meta) -> Vec<u8> {
 }
 
 pub(crate) fn counts_against_each_other() -> Vec<Seen> {
-    let change: [fn(&mut Meta); 6] = [
+    let change: [fn(&mut Meta); 7] = [
         |m| m.active = m.points + 1,
         |m| m.vertices = m.points - 1,
         |m| m.joints -= 1,
         |m| m.nodes -= 1,
         |m| m.regions -= 1,
         |m| m.stride = 256,
+        |m| m.stride = 6,
     ];
     let metas = change.map(|change| {
         let mut meta = tube_meta();

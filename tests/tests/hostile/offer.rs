@@ -74,7 +74,8 @@ fn live(asset: Asset<'_>) {
     character.save_state(&mut state).expect("its length");
     assert_eq!(character.load_state(&state), Ok(()), "what was saved can be loaded");
     let [positions, normals] = &mut buffers;
-    character.skin_surface(true, positions, normals);
+    assert_eq!(character.skin_surface(true, positions, normals), Ok(()), "buffers of its length");
+    assert!(character.skin_surface(true, positions, &mut []).is_err(), "a buffer too short");
     assert!(positions.iter().chain(&*normals).flatten().all(|x| x.is_finite()), "skinned");
 }
 

@@ -28,6 +28,11 @@ fn rotate(map: &Affine, vectors: &mut [[f32; 3]]) {
     }
 }
 
+/// Copies as many vectors as fit.
+fn copy(from: &[[f32; 3]], to: &mut [[f32; 3]]) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
+}
+
 /// Components of a run of points, none where there are not so many.
 fn components<'a>(points: &'a [[f32; 3]], run: &Range<usize>) -> &'a [f32] {
     points.get(run.clone()).unwrap_or_default().as_flattened()
@@ -64,12 +69,12 @@ impl<'a> State<'a> {
         springs: &[Spring],
         rest: f32,
     ) {
-        self.x.copy_from_slice(targets);
-        self.f.copy_from_slice(f);
+        copy(targets, self.x);
+        copy(f, self.f);
         self.v.fill([0.0; 3]);
         self.slope.fill([0.0; 3]);
         for ((y, f), region) in self.y.iter_mut().zip(f).zip(regions) {
-            let ks = springs[usize::from(*region)].ks;
+            let ks = springs.get(usize::from(*region)).map_or(0.0, |spring| spring.ks);
             let sag = if ks > 0.0 { vec3::scale(*f, 1.0 / ks) } else { [0.0; 3] };
             let small = sag.iter().all(|c| crate::math::float::abs(*c) < rest);
             *y = if small { [0.0; 3] } else { sag };
@@ -88,7 +93,7 @@ impl<'a> State<'a> {
 
     /// Follows targets that jumped: offsets and relative velocities stay, the jump is not felt.
     pub fn jump(&mut self, targets: &[[f32; 3]]) {
-        self.x.copy_from_slice(targets);
+        copy(targets, self.x);
         for (v, slope) in self.v.iter_mut().zip(self.slope.iter_mut()) {
             *v = vec3::sub(*v, *slope);
             *slope = [0.0; 3];
