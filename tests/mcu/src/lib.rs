@@ -2,6 +2,8 @@
 
 #![no_std]
 
+#[cfg(all(target_arch = "arm", target_os = "none"))]
+pub mod board;
 pub mod figures;
 mod network;
 
