@@ -23,7 +23,9 @@ pub fn say(name: &str, number: u64) {
 /// Ends the emulation.
 pub fn exit(success: bool) -> ! {
     debug::exit(if success { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
-    loop {}
+    loop {
+        core::hint::spin_loop();
+    }
 }
 
 unsafe extern "C" {

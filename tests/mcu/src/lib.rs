@@ -122,7 +122,9 @@ mod tests {
     #[test]
     fn the_figures_run() {
         let mut names = std::vec::Vec::new();
-        let done = figures::run(&TUBE.0, &mut [0.0; MEMORY], &mut |name, _| names.push(std::string::String::from(name)));
+        let done = figures::run(&TUBE.0, &mut [0.0; MEMORY], &mut |name, _| {
+            names.push(std::string::String::from(name));
+        });
         assert_eq!((done, names.len()), (Some(()), 10), "{names:?}");
     }
 }

@@ -33,7 +33,13 @@ pub(crate) fn ready() -> Result<PathBuf> {
     fs::create_dir_all(folder())?;
     fs::write(&source, PLUGIN)?;
     let mut cc = process::command("cc", &workspace::root());
-    cc.args(["-O2", "-shared", "-fPIC", &format!("-DAPI={}", plugin_api(&version.unwrap_or_default())), "-o"]);
+    cc.args([
+        "-O2",
+        "-shared",
+        "-fPIC",
+        &format!("-DAPI={}", plugin_api(&version.unwrap_or_default())),
+        "-o",
+    ]);
     process::run("plugin that counts instructions", cc.arg(&plugin).arg(&source))
         .context("a C compiler makes the plugin that counts instructions: install `gcc`")?;
     Ok(plugin)
@@ -71,7 +77,8 @@ pub(crate) fn run(board: &str, plugin: &Path, file: &Path, image: &Image) -> Res
         }
     }
     let mut qemu = process::command("timeout", &workspace::root());
-    qemu.args(["120", QEMU, "-machine", board, "-nographic"]);
+    // Not `-nographic`: it makes writing non-blocking, and lines would be lost where they come fast.
+    qemu.args(["120", QEMU, "-machine", board, "-display", "none", "-monitor", "none", "-serial", "none"]);
     qemu.args(["-semihosting-config", "enable=on,target=native", "-plugin"]).arg(options);
     qemu.arg("-kernel").arg(file);
     let name = file.file_name().unwrap_or_default().display();

@@ -20,9 +20,16 @@ const PARTS: [(&str, &[&str]); 9] = [
     (
         "elementary functions",
         &[
-            "core/src/math/psi", "core/src/math/exp", "core/src/math/trig", "core/src/math/entire",
-            "core/src/math/theta", "core/src/math/activation", "core/src/math/rounding", "core/src/math/hard",
-            "core/src/math/wide", "core/src/math/twin",
+            "core/src/math/psi",
+            "core/src/math/exp",
+            "core/src/math/trig",
+            "core/src/math/entire",
+            "core/src/math/theta",
+            "core/src/math/activation",
+            "core/src/math/rounding",
+            "core/src/math/hard",
+            "core/src/math/wide",
+            "core/src/math/twin",
         ],
     ),
     ("clips, pose", &["core/src/kernel/clip", "core/src/stage/pose"]),
@@ -31,11 +38,19 @@ const PARTS: [(&str, &[&str]); 9] = [
     ("floats in software", &["compiler-builtins/src/float", "libm/src/math", "libm-0"]),
     (
         "life of the character",
-        &["core/src/character", "core/src/life", "core/src/tunables", "core/src/workspace", "math/noise", "math/canary"],
+        &[
+            "core/src/character",
+            "core/src/life",
+            "core/src/tunables",
+            "core/src/workspace",
+            "math/noise",
+            "math/canary",
+        ],
     ),
 ];
 /// Small functions that belong to whoever calls them, unless they are on their own.
-const SHARED: (&str, &[&str]) = ("vectors, shared", &["core/src/lanes/", "core/src/math/", "core/src/kernel/tiny"]);
+const SHARED: (&str, &[&str]) =
+    ("vectors, shared", &["core/src/lanes/", "core/src/math/", "core/src/kernel/tiny"]);
 const REST: &str = "start, print, copy";
 
 /// Sections that programs are made of, B.
@@ -69,14 +84,20 @@ impl Image {
     /// If it is not the firmware's.
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let file = object::File::parse(&*bytes).with_context(|| format!("{} is no ELF file", path.display()))?;
+        let file =
+            object::File::parse(&*bytes).with_context(|| format!("{} is no ELF file", path.display()))?;
         let size = |name: &str| file.section_by_name(name).map_or(0, |s| s.size());
-        let named = file.symbols().filter(|s| matches!(s.kind(), SymbolKind::Text | SymbolKind::Data | SymbolKind::Unknown));
+        let named = file
+            .symbols()
+            .filter(|s| matches!(s.kind(), SymbolKind::Text | SymbolKind::Data | SymbolKind::Unknown));
         let symbols: Vec<_> = named
-            .filter_map(|s| Some((format!("{:#}", rustc_demangle::demangle(s.name().ok()?)), s.address(), s.size())))
+            .filter_map(|s| {
+                Some((format!("{:#}", rustc_demangle::demangle(s.name().ok()?)), s.address(), s.size()))
+            })
             .filter(|(name, ..)| !name.is_empty() && !name.starts_with('$'))
             .collect();
-        let of = |part: &str| symbols.iter().filter(|(name, ..)| name.contains(part)).map(|(.., size)| size).sum();
+        let of =
+            |part: &str| symbols.iter().filter(|(name, ..)| name.contains(part)).map(|(.., size)| size).sum();
         let asset = of("sinew_mcu::TUBE");
         let sizes = Sizes {
             text: size(".text") + size(".vector_table"),
@@ -96,7 +117,9 @@ impl Image {
     pub(crate) fn address(&self, name: &str) -> Result<u64> {
         let found = self.symbols.iter().find(|(n, ..)| n == name);
         // The lowest bit says that it is Thumb code.
-        found.map(|(_, address, _)| address & !1).with_context(|| format!("the firmware has no function `{name}`"))
+        found
+            .map(|(_, address, _)| address & !1)
+            .with_context(|| format!("the firmware has no function `{name}`"))
     }
 
     /// Symbols whose names tell of any of `words`.
@@ -116,7 +139,8 @@ impl Image {
     pub(crate) fn code(&self, lines: &Lines) -> Result<BTreeMap<&'static str, u64>> {
         let mut sum = BTreeMap::new();
         let mut end = 0;
-        let mut functions: Vec<_> = self.symbols.iter().map(|(_, address, size)| (address & !1, *size)).collect();
+        let mut functions: Vec<_> =
+            self.symbols.iter().map(|(_, address, size)| (address & !1, *size)).collect();
         functions.sort_unstable();
         for (start, size) in functions.into_iter().filter(|(start, _)| *start < self.sizes.text) {
             // Several names may stand for one function; an instruction has two bytes or four.
@@ -140,7 +164,8 @@ impl Lines {
     /// If it cannot be read.
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let file = object::File::parse(&*bytes).with_context(|| format!("{} is no ELF file", path.display()))?;
+        let file =
+            object::File::parse(&*bytes).with_context(|| format!("{} is no ELF file", path.display()))?;
         let section = |id: gimli::SectionId| {
             let data = file.section_by_name(id.name()).map_or(Ok(&[][..]), |s| s.data());
             data.map(|data| EndianRcSlice::new(Rc::from(data), LittleEndian))

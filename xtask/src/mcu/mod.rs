@@ -71,7 +71,8 @@ struct Kernel {
 pub(crate) fn run(json: bool) -> Result<bool> {
     let plugin = board::ready()?;
     let golden = golden(GOLDEN).context("no constant GOLDEN in tests/mcu/src/lib.rs")?;
-    let outcomes = BOARDS.iter().map(|board| on_board(board, &plugin, &golden)).collect::<Result<Vec<_>>>()?;
+    let outcomes =
+        BOARDS.iter().map(|board| on_board(board, &plugin, &golden)).collect::<Result<Vec<_>>>()?;
     let text = if json { tables::json(&outcomes).to_string() } else { tables::text(&outcomes) };
     report::say(text);
     for outcome in &outcomes {
@@ -81,7 +82,11 @@ pub(crate) fn run(json: bool) -> Result<bool> {
 }
 
 /// Builds, runs and reads both firmwares.
-fn on_board(&[triple, machine, processor]: &[&'static str; 3], plugin: &Path, golden: &str) -> Result<Outcome> {
+fn on_board(
+    &[triple, machine, processor]: &[&'static str; 3],
+    plugin: &Path,
+    golden: &str,
+) -> Result<Outcome> {
     let [player, figures] = board::build(triple)?;
     let image = Image::read(&player)?;
     let spans = board::run(machine, plugin, &player, &image)?;
@@ -97,7 +102,10 @@ fn on_board(&[triple, machine, processor]: &[&'static str; 3], plugin: &Path, go
         stack: trace::number(&spans, "stack")?,
         code: image.code(&Lines::read(&player)?)?,
         frames: trace::frames(&spans)?,
-        kernels: kernels(&board::run(machine, plugin, &figures, &Image::read(&figures)?)?, &Lines::read(&figures)?)?,
+        kernels: kernels(
+            &board::run(machine, plugin, &figures, &Image::read(&figures)?)?,
+            &Lines::read(&figures)?,
+        )?,
         panics,
         heap,
     })
@@ -110,7 +118,8 @@ fn kernels(spans: &[Span], lines: &Lines) -> Result<Vec<Kernel>> {
         for (address, times) in &span.ran {
             *parts.entry(lines.part(*address)?).or_default() += times;
         }
-        let instructions = span.instructions().with_context(|| format!("no two marks after `{}`", span.name))?;
+        let instructions =
+            span.instructions().with_context(|| format!("no two marks after `{}`", span.name))?;
         Ok(Kernel { name: span.name.clone(), elements: span.number, instructions, parts })
     };
     spans.iter().filter(|span| !span.name.is_empty()).map(kernel).collect()

@@ -7,6 +7,15 @@ use serde_json::{Value, json};
 use super::{Kernel, Outcome};
 use crate::report;
 
+/// What moves the flesh, with all the functions that it may use.
+const MOTION: [&str; 6] = [
+    "springs",
+    "skinning, normals",
+    "network",
+    "elementary functions",
+    "floats in software",
+    "vectors, shared",
+];
 /// Vertices of the tube, by which a frame is divided.
 const SURFACE: &str = "skin: vertices and normals";
 
@@ -23,7 +32,8 @@ pub(crate) fn text(outcomes: &[Outcome]) -> String {
 
 /// A row a board: bits, flash, RAM.
 fn boards(outcomes: &[Outcome]) -> Vec<Vec<String>> {
-    let head = ["target", "processor", "digest", "code, B", "constants", "asset", "RAM, B", "of it floats", "stack"];
+    let head =
+        ["target", "processor", "digest", "code, B", "constants", "asset", "RAM, B", "of it floats", "stack"];
     let row = |o: &Outcome| {
         let s = &o.sizes;
         let numbers = [s.text, s.constants, s.asset, s.variables, s.memory, o.stack].map(|n| n.to_string());
@@ -37,12 +47,16 @@ fn boards(outcomes: &[Outcome]) -> Vec<Vec<String>> {
 /// Bytes of code by part of the source, largest first.
 fn code(outcomes: &[Outcome]) -> Vec<Vec<String>> {
     let columns: Vec<_> = outcomes.iter().map(|o| o.code.clone()).collect();
-    sums("bytes of code", outcomes, &columns)
+    let mut table = sums("bytes of code", outcomes, &columns);
+    let motion = |o: &Outcome| MOTION.iter().filter_map(|part| o.code.get(part)).sum::<u64>().to_string();
+    table.push(line("springs, skinning, network, and what they use", outcomes.iter().map(motion)));
+    table
 }
 
 /// A kernel's instructions by part of the source.
 fn by_part(outcomes: &[Outcome], name: &str) -> Vec<Vec<String>> {
-    let of = |o: &Outcome| o.kernels.iter().find(|k| k.name == name).map(|k| k.parts.clone()).unwrap_or_default();
+    let of =
+        |o: &Outcome| o.kernels.iter().find(|k| k.name == name).map(|k| k.parts.clone()).unwrap_or_default();
     sums(&format!("instructions: {name}"), outcomes, &outcomes.iter().map(of).collect::<Vec<_>>())
 }
 
@@ -55,7 +69,8 @@ fn listed(outcomes: &[Outcome]) -> Vec<String> {
 /// Numbers by name, a column a board, with their sum.
 fn sums(title: &str, outcomes: &[Outcome], columns: &[BTreeMap<&str, u64>]) -> Vec<Vec<String>> {
     let number = |column: &BTreeMap<&str, u64>, name: &str| column.get(name).copied().unwrap_or(0);
-    let mut names: Vec<&str> = columns.iter().flat_map(|c| c.keys().copied()).collect::<BTreeSet<_>>().into_iter().collect();
+    let mut names: Vec<&str> =
+        columns.iter().flat_map(|c| c.keys().copied()).collect::<BTreeSet<_>>().into_iter().collect();
     names.sort_by_key(|name| core::cmp::Reverse(columns.first().map(|c| number(c, name))));
     let row = |name: &&str| line(name, columns.iter().map(|c| number(c, name).to_string()));
     let sum = line("sum", columns.iter().map(|c| c.values().sum::<u64>().to_string()));
@@ -66,18 +81,27 @@ fn sums(title: &str, outcomes: &[Outcome], columns: &[BTreeMap<&str, u64>]) -> V
 fn instructions(outcomes: &[Outcome]) -> Vec<Vec<String>> {
     let mut table = Vec::new();
     for (i, name) in ["step", "skinning", "network", "all"].iter().enumerate() {
-        table.push(line(&format!("frame: {name}"), outcomes.iter().map(|o| format!("{:.0}", o.frames[i].mean))));
+        table.push(line(
+            &format!("frame: {name}"),
+            outcomes.iter().map(|o| format!("{:.0}", o.frames[i].mean)),
+        ));
     }
     table.push(line("frame: most", outcomes.iter().map(|o| o.frames[3].most.to_string())));
     let per_vertex = |o: &Outcome| (o.frames[0].mean + o.frames[1].mean) / vertices(o);
-    table.push(line("frame without network, a vertex", outcomes.iter().map(|o| format!("{:.1}", per_vertex(o)))));
+    table.push(line(
+        "frame without network, a vertex",
+        outcomes.iter().map(|o| format!("{:.1}", per_vertex(o))),
+    ));
     let kernels = outcomes.first().map(|o| &o.kernels[..]).unwrap_or_default();
     for (i, kernel) in kernels.iter().enumerate() {
         let name = match kernel.elements {
             1 => kernel.name.clone(),
             n => format!("{}, one of {n}", kernel.name),
         };
-        table.push(line(&name, outcomes.iter().map(|o| o.kernels.get(i).map_or_else(String::new, |k| format!("{:.1}", each(k))))));
+        table.push(line(
+            &name,
+            outcomes.iter().map(|o| o.kernels.get(i).map_or_else(String::new, |k| format!("{:.1}", each(k)))),
+        ));
     }
     rows(&head("instructions", outcomes), table.into_iter())
 }
@@ -110,9 +134,7 @@ fn rows(head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Vec<Vec<Strin
 pub(crate) fn json(outcomes: &[Outcome]) -> Value {
     let board = |o: &Outcome| {
         let [step, skinning, network, all] = o.frames.map(|s| json!({"mean": s.mean, "most": s.most}));
-        let kernel = |k: &Kernel| {
-            json!({"name": k.name, "elements": k.elements, "instructions": k.instructions, "parts": k.parts})
-        };
+        let kernel = |k: &Kernel| json!({"name": k.name, "elements": k.elements, "instructions": k.instructions, "parts": k.parts});
         let s = &o.sizes;
         json!({
             "target": o.triple,

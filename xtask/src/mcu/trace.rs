@@ -102,7 +102,11 @@ mod tests {
                     two words 00000000000000ff\nmark 150\nran 7f 1\nmark 170\nran 80 3\n";
         let spans = spans(text).unwrap();
         assert_eq!(number(&spans, "two words").unwrap(), 255, "hexadecimal");
-        assert_eq!((spans[1].instructions(), &spans[1].ran[..]), (Some(20), &[(128, 3)][..]), "between marks");
+        assert_eq!(
+            (spans[1].instructions(), &spans[1].ran[..]),
+            (Some(20), &[(128, 3)][..]),
+            "between marks"
+        );
         let [step, skin, network, all] = frames(&spans).unwrap();
         assert_eq!((step.mean, step.most, all.most), (30.0, 40, 47), "the step and the frame");
         assert_eq!((skin.most, network.mean), (5, 1.5), "the others");

@@ -15,6 +15,7 @@ fn main() -> ! {
     // The attribute makes it a reference that is given out once.
     static mut FLOATS: [f32; sinew_mcu::MEMORY] = [0.0; sinew_mcu::MEMORY];
     use sinew_mcu::{board, figures};
-    let done = figures::run(&sinew_mcu::TUBE.0, FLOATS, &mut |name, elements| board::say(name, elements as u64));
+    let done =
+        figures::run(&sinew_mcu::TUBE.0, FLOATS, &mut |name, elements| board::say(name, elements as u64));
     board::exit(done.is_some())
 }
