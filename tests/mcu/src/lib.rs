@@ -125,6 +125,6 @@ mod tests {
         let done = figures::run(&TUBE.0, &mut [0.0; MEMORY], &mut |name, _| {
             names.push(std::string::String::from(name));
         });
-        assert_eq!((done, names.len()), (Some(()), 10), "{names:?}");
+        assert_eq!((done, names.len()), (Some(()), 11), "{names:?}");
     }
 }

@@ -9,8 +9,10 @@ use anyhow::{Context, Result, anyhow};
 use gimli::{EndianRcSlice, LittleEndian};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
+/// What is in no other part.
+const REST: &str = "start, print, copy";
 /// Parts of the source, by what is in the path of a file; the first that fits.
-const PARTS: [(&str, &[&str]); 9] = [
+const PARTS: [(&str, &[&str]); 10] = [
     ("springs", &["core/src/kernel/spring", "core/src/kernel/target", "core/src/stage/dynamics/"]),
     (
         "skinning, normals",
@@ -35,7 +37,9 @@ const PARTS: [(&str, &[&str]); 9] = [
     ("clips, pose", &["core/src/kernel/clip", "core/src/stage/pose"]),
     ("asset", &["core/src/asset/"]),
     ("digests", &["core/src/math/digest"]),
-    ("floats in software", &["compiler-builtins/src/float", "libm/src/math", "libm-0"]),
+    // The compiler's own library: first what copies memory, then what the processor cannot calculate.
+    (REST, &["compiler-builtins/src/mem", "compiler-builtins/src/arm.rs"]),
+    ("arithmetic in software", &["compiler-builtins/src/", "libm/src/math", "libm-0"]),
     (
         "life of the character",
         &[
@@ -51,7 +55,6 @@ const PARTS: [(&str, &[&str]); 9] = [
 /// Small functions that belong to whoever calls them, unless they are on their own.
 const SHARED: (&str, &[&str]) =
     ("vectors, shared", &["core/src/lanes/", "core/src/math/", "core/src/kernel/tiny"]);
-const REST: &str = "start, print, copy";
 
 /// Sections that programs are made of, B.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -13,7 +13,7 @@ const MOTION: [&str; 6] = [
     "skinning, normals",
     "network",
     "elementary functions",
-    "floats in software",
+    "arithmetic in software",
     "vectors, shared",
 ];
 /// Vertices of the tube, by which a frame is divided.
