@@ -73,8 +73,12 @@ enum Chore {
         #[arg(long, default_value = "")]
         function: String,
     },
-    /// Run the firmware on emulated microcontrollers and compare the bits.
-    Mcu,
+    /// Run the firmware on emulated microcontrollers, compare the bits, and count bytes and instructions.
+    Mcu {
+        /// One JSON object on standard output, nothing else there.
+        #[arg(long)]
+        json: bool,
+    },
     /// Build the npm package into `wasm/pkg` and check its size.
     Wasm,
     /// Build the page and serve it.
@@ -122,7 +126,7 @@ fn run(chore: Chore) -> Result<bool> {
         Chore::Test { filter } => return test::run(&filter),
         Chore::Exhaustive { json, function } => return exhaustive::run(json, &function),
         Chore::Targets { json, filter } => return targets::run(json, &filter).map(|(_, failed)| failed == 0),
-        Chore::Mcu => return mcu::run(),
+        Chore::Mcu { json } => return mcu::run(json),
         Chore::Setup => setup::run(),
         Chore::Demo { headless, port } => demo::run(headless, port),
         Chore::Wasm => wasm::run(),

@@ -5,30 +5,20 @@
 #[cfg(not(all(target_arch = "arm", target_os = "none")))]
 #[allow(clippy::print_stdout, reason = "a command line prints")]
 fn main() {
-    let mut memory = [0.0; sinew_mcu::MEMORY];
-    println!("{:016x}", sinew_mcu::play(&sinew_mcu::TUBE.0, &mut memory));
+    match sinew_mcu::play(&sinew_mcu::TUBE.0, &mut [0.0; sinew_mcu::MEMORY]) {
+        Some(digest) => println!("digest {digest:016x}"),
+        None => println!("the asset was refused"),
+    }
 }
 
 #[cfg(all(target_arch = "arm", target_os = "none"))]
-mod firmware {
-    #![allow(unsafe_code, reason = "the entry point is exported by name")]
-
-    use core::panic::PanicInfo;
-    use cortex_m as _;
-    use cortex_m_semihosting::{debug, hprintln};
-
-    #[cortex_m_rt::entry]
-    fn main() -> ! {
-        let mut memory = [0.0; sinew_mcu::MEMORY];
-        let digest = sinew_mcu::play(&sinew_mcu::TUBE.0, &mut memory);
-        hprintln!("{:016x}", digest);
-        debug::exit(debug::EXIT_SUCCESS);
-        loop {}
-    }
-
-    #[panic_handler]
-    fn panic(_: &PanicInfo<'_>) -> ! {
-        debug::exit(debug::EXIT_FAILURE);
-        loop {}
-    }
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    // The attribute makes it a reference that is given out once.
+    static mut FLOATS: [f32; sinew_mcu::MEMORY] = [0.0; sinew_mcu::MEMORY];
+    use sinew_mcu::board;
+    let digest = sinew_mcu::play(&sinew_mcu::TUBE.0, FLOATS);
+    board::say("stack", board::stack_used());
+    board::say("digest", digest.unwrap_or(0));
+    board::exit(digest.is_some())
 }
