@@ -8,23 +8,18 @@ use crate::kernel::spring::{Spring, Step};
 use crate::kernel::tiny::{flush, flush_all};
 use crate::kernel::unskin::{self, Limit, Tissue};
 use crate::life::{Life, Phase};
-use crate::math::affine::{self, Affine};
+use crate::math::affine;
 use crate::math::{canary, float, noise, vec3};
 use crate::stage::embed::Surface;
 use crate::stage::pose::{Root, Skeleton};
 use crate::stage::skin::Targets;
 use crate::stage::{embed, pose, skin as skin_stage};
-use crate::step::{Digests, Pose, StepError, Stepped};
+use crate::step::{Digests, Pose, StepError, Stepped, check_joints};
 use crate::tunables::{Region, TunableError, Tunables};
 use crate::workspace::{LengthError, Workspace};
 
 /// Offsets below this share of the body count as rest.
 const REST: f32 = 1e-7;
-/// Largest entry of a joint's transform.
-const LARGEST_JOINT: f32 = 1e7;
-/// Largest entry of a joint's map from bind space. With an asset's largest numbers and the stiffest springs the
-/// state stays below 1e32 over any time that a character lives.
-const LARGEST_MAP: f32 = 1e9;
 /// A frequency below this, Hz, counts as 0.
 const SLOWEST: f32 = 1e-3;
 /// Bits of the canary's word under which results would differ: rounding, and contraction.
@@ -263,8 +258,7 @@ impl<'a> Character<'a> {
         skin_stage::targets(m.palette, asset.influences, asset.rest, forces, out);
         self.follow(&root, dt);
         let (asset, m) = (&self.asset, &mut self.memory);
-        let tissue =
-            Tissue { softness: asset.softness, region: asset.region_of_point, limits: &self.limits };
+        let tissue = Tissue { softness: asset.softness, region: asset.region_of_point, limits: &self.limits };
         unskin::unskin(m.palette, asset.influences, m.linear, m.state.y, tissue, m.offsets);
         embed::embed(surface(asset), m.offsets, m.positions, m.normals);
         self.life.root = root;
@@ -383,16 +377,6 @@ impl<'a> Character<'a> {
     #[must_use]
     pub fn digests(&self) -> Digests {
         Digests::of(&self.memory)
-    }
-}
-
-/// Fails at the first joint whose transform, or whose map from bind space, is not finite or too large.
-fn check_joints(root_from_joint: &[Affine], joint_from_bind: &[Affine]) -> Result<(), StepError> {
-    let within = |m: &Affine, most: f32| m.as_flattened().iter().all(|x| float::abs(*x) <= most);
-    let usable = |(a, b)| within(a, LARGEST_JOINT) && within(&affine::mul(a, b), LARGEST_MAP);
-    match root_from_joint.iter().zip(joint_from_bind).position(|pair| !usable(pair)) {
-        None => Ok(()),
-        Some(i) => Err(StepError::BadJoint(u32::try_from(i).unwrap_or(u32::MAX))),
     }
 }
 

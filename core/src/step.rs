@@ -1,7 +1,8 @@
 //! What goes into a step and what comes out of it.
 
-use crate::math::affine::Affine;
+use crate::math::affine::{self, Affine};
 use crate::math::digest::Digest;
+use crate::math::float;
 use crate::stage::dynamics::springs::State;
 use crate::stage::pose::Root;
 use crate::workspace::{LengthError, Workspace};
@@ -71,6 +72,22 @@ impl fmt::Display for StepError {
 }
 
 impl core::error::Error for StepError {}
+
+/// Largest entry of a joint's transform.
+const LARGEST_JOINT: f32 = 1e7;
+/// Largest entry of a joint's map from bind space. With an asset's largest numbers and the stiffest springs the
+/// state stays below 1e32 over any time that a character lives.
+const LARGEST_MAP: f32 = 1e9;
+
+/// Fails at the first joint whose transform, or whose map from bind space, is not finite or too large.
+pub(crate) fn check_joints(root_from_joint: &[Affine], joint_from_bind: &[Affine]) -> Result<(), StepError> {
+    let within = |m: &Affine, most: f32| m.as_flattened().iter().all(|x| float::abs(*x) <= most);
+    let usable = |(a, b)| within(a, LARGEST_JOINT) && within(&affine::mul(a, b), LARGEST_MAP);
+    match root_from_joint.iter().zip(joint_from_bind).position(|pair| !usable(pair)) {
+        None => Ok(()),
+        Some(i) => Err(StepError::BadJoint(u32::try_from(i).unwrap_or(u32::MAX))),
+    }
+}
 
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

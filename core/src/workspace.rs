@@ -63,7 +63,7 @@ pub(crate) struct Workspace<'a> {
 
 /// Takes `n` elements of `N` floats from the front of `buffer`.
 fn take<'a, const N: usize>(buffer: &mut &'a mut [f32], n: usize) -> &'a mut [[f32; N]] {
-    let (head, rest) = core::mem::take(buffer).split_at_mut(n * N);
+    let (head, rest) = core::mem::take(buffer).split_at_mut_checked(n * N).unwrap_or_default();
     *buffer = rest;
     head.as_chunks_mut().0
 }
@@ -73,7 +73,11 @@ impl<'a> Workspace<'a> {
     pub(crate) fn required_len(asset: &Asset<'_>) -> usize {
         let m = &asset.meta;
         let [active, vertices, joints, nodes] = [m.active, m.vertices, m.joints, m.nodes].map(|n| n as usize);
-        active * (8 * 3) + active.div_ceil(BLOCK) * LINEAR + vertices * 6 + joints * (12 + 12) + nodes * (10 + 12)
+        active * (8 * 3)
+            + active.div_ceil(BLOCK) * LINEAR
+            + vertices * 6
+            + joints * (12 + 12)
+            + nodes * (10 + 12)
     }
 
     /// Splits `buffer`.

@@ -145,14 +145,15 @@ fn rest(point: u32) -> [f32; 3] {
 }
 
 /// Joint and weight, twice: rings on a joint's height belong to it, those between to both neighbours.
-fn influences(point: u32) -> [(u16, f32); 2] {
-    match place(point).0 {
+fn influences(point: u32) -> [(u16, f32); 4] {
+    let [a, b] = match place(point).0 {
         0 => [(0, 1.0), (0, 0.0)],
         1 => [(0, 0.5), (1, 0.5)],
         2 => [(1, 1.0), (0, 0.0)],
         3 => [(1, 0.625), (2, 0.375)],
         _ => [(2, 1.0), (0, 0.0)],
-    }
+    };
+    [a, b, (0, 0.0), (0, 0.0)]
 }
 
 fn point_of_vertex(vertex: u32) -> u32 {

@@ -41,7 +41,9 @@ impl Keys<'_> {
     fn span(&self, t: f32) -> Result<(usize, f32, f32), usize> {
         let after = self.times.partition_point(|key| *key <= t);
         let Some(before) = after.checked_sub(1) else { return Err(0) };
-        let (Some(t0), Some(t1)) = (self.times.get(before), self.times.get(after)) else { return Err(before) };
+        let (Some(t0), Some(t1)) = (self.times.get(before), self.times.get(after)) else {
+            return Err(before);
+        };
         let span = t1 - t0;
         Ok((before, (t - t0) / span, span))
     }

@@ -2,6 +2,7 @@
 
 pub mod clip;
 pub mod cofactor;
+pub mod load;
 pub mod mlp;
 pub mod normal;
 pub mod skin;

@@ -9,9 +9,9 @@
 
 use super::cofactor::{Cofactors, Linear};
 use crate::dispatch;
-use crate::lanes::block::{read, write};
 pub use crate::lanes::block::{BLOCK, Vectors};
-use crate::lanes::{Lanes, each, three};
+use crate::lanes::block::{read, write};
+use crate::lanes::{F32x4, Lanes, each, three};
 use crate::math::float::{max, sqrt};
 use crate::math::{quat, vec3};
 
@@ -125,12 +125,16 @@ pub fn skin(
     out: &mut [[f32; 3]],
     linear: &mut [LinearBlock],
 ) {
-    dispatch::skin(palette, influences, rest, out, linear);
+    skin_at(dispatch::widest(), palette, influences, rest, out, linear);
 }
+
+dispatch::copies!(skin_at, skin_any::<F32x4>, (
+    palette: &[Rows], influences: Influences<'_>, rest: &[[f32; 3]], out: &mut [[f32; 3]], linear: &mut [LinearBlock],
+));
 
 /// [`skin`] on a given lane type.
 #[inline(always)]
-pub(crate) fn skin_any<L: Lanes>(
+fn skin_any<L: Lanes>(
     palette: &[Rows],
     influences: Influences<'_>,
     rest: &[[f32; 3]],
@@ -163,12 +167,16 @@ pub fn skin_surface(
     positions: &mut [[f32; 3]],
     normals: &mut [[f32; 3]],
 ) {
-    dispatch::skin_surface(palette, influences, point_of_vertex, positions, normals);
+    skin_surface_at(dispatch::widest(), palette, influences, point_of_vertex, positions, normals);
 }
+
+dispatch::copies!(skin_surface_at, skin_surface_any::<F32x4>, (
+    palette: &[Rows], influences: Influences<'_>, points: &[u32], positions: &mut [[f32; 3]], normals: &mut [[f32; 3]],
+));
 
 /// [`skin_surface`] on a given lane type.
 #[inline(always)]
-pub(crate) fn skin_surface_any<L: Lanes>(
+fn skin_surface_any<L: Lanes>(
     palette: &[Rows],
     influences: Influences<'_>,
     point_of_vertex: &[u32],
@@ -197,7 +205,8 @@ pub(crate) fn skin_surface_any<L: Lanes>(
         write(&p, positions);
         write(&n, normals);
         if usable != [true; BLOCK] {
-            for (lane, normal) in (0..BLOCK).zip(normals).filter(|(lane, _)| !usable[*lane]) {
+            let flat = (0..).zip(normals).zip(usable).filter(|(_, usable)| !usable);
+            for ((lane, normal), _) in flat {
                 let m = dominant_map(palette, &influences, point(lane));
                 *normal = turn_normal(&m, *normal, 0.0).0;
             }
@@ -307,6 +316,8 @@ mod tests {
         assert_eq!(opposite, turn(0.0));
     }
 
+    /// Skins vertices in place: points, positions, normals.
+    type Skin<'a> = &'a dyn Fn(&[u32], &mut [[f32; 3]], &mut [[f32; 3]]);
     type Kernel = fn(&[Rows], Influences<'_>, &[u32], &mut [[f32; 3]], &mut [[f32; 3]]);
 
     /// A vertex has the same bits in a block, in the tail and alone, in each copy that this machine can run and on
@@ -328,7 +339,7 @@ mod tests {
         let weights: Vec<[f32; 4]> = (0..n).flat_map(row).collect();
         let influences = Influences { sets: 2, joints: &joints, weights: &weights };
         let rest: Vec<[f32; 3]> = (0..n).map(|i| [0.3, -0.02 * f32::from(i), 0.9]).collect();
-        let run = |points: &[u32], kernel: &dyn Fn(&[u32], &mut [[f32; 3]], &mut [[f32; 3]])| {
+        let run = |points: &[u32], kernel: Skin<'_>| {
             let mut p: Vec<[f32; 3]> = points.iter().map(|i| rest[*i as usize]).collect();
             let mut n: Vec<[f32; 3]> = p.iter().map(|p| vec3::normalize_or(*p, [0.0; 3])).collect();
             kernel(points, &mut p, &mut n);
@@ -342,12 +353,12 @@ mod tests {
             let from = all.len() - count;
             for level in dispatch::levels() {
                 let found: Vec<_> = run(&all[from..], &|v, p, n| {
-                    dispatch::skin_surface_at(level, &palette, influences, v, p, n);
+                    skin_surface_at(level, &palette, influences, v, p, n);
                 })
                 .collect();
                 assert_eq!(found, want[from..], "{level:?}: {count} vertices");
                 let (mut out, mut linear) = (vec![[9.0; 3]; count], vec![[[[0.0; BLOCK]; 3]; 3]; 3]);
-                dispatch::skin_at(level, &palette, influences, &rest[..count], &mut out, &mut linear);
+                skin_at(level, &palette, influences, &rest[..count], &mut out, &mut linear);
                 let bits: Vec<_> = out.iter().map(|p| p.map(f32::to_bits)).collect();
                 let first: Vec<_> = want.iter().take(count).map(|[p, _]| *p).collect();
                 assert_eq!(bits, first, "{level:?}: {count} points");

@@ -158,15 +158,19 @@ pub struct Knots<'a> {
 /// Advances springs of equal parameters by one step.
 pub fn advance(step: &Step, knots: Knots<'_>) {
     let Knots { x: [x0, x1], f: [f0, f1], y, v, slope } = knots;
-    dispatch::advance(step, x0, x1, f0, f1, y, v, slope);
+    advance_at(dispatch::widest(), step, x0, x1, f0, f1, y, v, slope);
 }
+
+dispatch::copies!(advance_at, advance_any, (
+    step: &Step, x0: &[f32], x1: &[f32], f0: &[f32], f1: &[f32], y: &mut [f32], v: &mut [f32], slope: &mut [f32],
+));
 
 /// The body of each copy of [`advance`]: `x₀, x₁, f₀, f₁` go in, `y, v, σ` through.
 ///
 /// Components know nothing of each other, so the compiler takes as many at a time as a register holds.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "only as arguments they are known not to overlap")]
-pub(crate) fn advance_any(
+fn advance_any(
     step: &Step,
     x0: &[f32],
     x1: &[f32],
@@ -293,7 +297,7 @@ mod tests {
                 for level in dispatch::levels() {
                     let mut found = start.clone();
                     let [y, v, slope] = found.each_mut().map(|s| &mut s[usize::from(offset)..]);
-                    dispatch::advance_at(level, &step, x0, x1, f0, f1, y, v, slope);
+                    advance_at(level, &step, x0, x1, f0, f1, y, v, slope);
                     assert_eq!(bits(&found), bits(&want), "{level:?}: {n} components, {offset} off");
                 }
             }

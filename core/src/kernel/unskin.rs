@@ -52,12 +52,17 @@ pub fn unskin(
     tissue: Tissue<'_>,
     out: &mut [[f32; 3]],
 ) {
-    dispatch::unskin(palette, influences, linear, y, tissue, out);
+    unskin_at(dispatch::widest(), palette, influences, linear, y, tissue, out);
 }
+
+dispatch::copies!(unskin_at, unskin_any, (
+    palette: &[Rows], influences: Influences<'_>, linear: &[LinearBlock], y: &[[f32; 3]], tissue: Tissue<'_>,
+    out: &mut [[f32; 3]],
+));
 
 /// The body of each copy of [`unskin`].
 #[inline(always)]
-pub(crate) fn unskin_any(
+fn unskin_any(
     palette: &[Rows],
     influences: Influences<'_>,
     linear: &[LinearBlock],
@@ -84,9 +89,11 @@ pub(crate) fn unskin_any(
         }
         write(&v, out);
         if regular != [true; BLOCK] {
-            for (lane, (y, out)) in (0..BLOCK).zip(y.iter().zip(out)).filter(|(lane, _)| !regular[*lane]) {
-                let m = dominant_map(palette, &influences, start + lane);
-                *out = show(&m, *y, soft[lane], inverse_square[lane]).0;
+            let points = (start..).zip(y.iter().zip(out)).zip(soft.iter().zip(&inverse_square));
+            for (((i, (y, out)), (soft, inverse_square)), _) in points.zip(regular).filter(|(_, fine)| !fine)
+            {
+                let m = dominant_map(palette, &influences, i);
+                *out = show(&m, *y, *soft, *inverse_square).0;
             }
         }
     }
@@ -137,7 +144,7 @@ mod tests {
         let tissue = Tissue { softness: &softness, region: &region, limits: &LIMITS };
         let one = |level| {
             let mut out = std::vec![[f32::NAN; 3]; usize::from(n)];
-            dispatch::unskin_at(level, &[identity], influences, &linear, &y, tissue, &mut out);
+            unskin_at(level, &[identity], influences, &linear, &y, tissue, &mut out);
             out
         };
         let mut all = dispatch::levels().map(one);

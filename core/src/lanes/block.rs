@@ -46,8 +46,9 @@ mod tests {
 
     #[test]
     fn what_is_read_is_written_again() {
-        for n in 0..=BLOCK as u8 {
-            let points: Vec<[f32; 3]> = (0..n).map(|i| [0.0, 100.0, 200.0].map(|k| k + f32::from(i))).collect();
+        for n in 0..33_u8 {
+            let points: Vec<[f32; 3]> =
+                (0..n).map(|i| [0.0, 100.0, 200.0].map(|k| k + f32::from(i))).collect();
             let (mut lanes, mut out) = ([[9.0; BLOCK]; 3], points.clone());
             read(&points, &mut lanes);
             assert!(lanes[2][usize::from(n)..].iter().all(|x| *x == 9.0), "{n}");

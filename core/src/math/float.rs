@@ -8,7 +8,12 @@ pub fn sqrt(x: f32) -> f32 {
     {
         x.sqrt()
     }
-    #[cfg(not(feature = "std"))]
+    // Without `std` Rust has no name for the instruction, and `libm` computes the root in software.
+    #[cfg(all(not(feature = "std"), target_arch = "arm", target_abi = "eabihf"))]
+    {
+        crate::dispatch::sqrt(x)
+    }
+    #[cfg(all(not(feature = "std"), not(all(target_arch = "arm", target_abi = "eabihf"))))]
     {
         libm::sqrtf(x)
     }

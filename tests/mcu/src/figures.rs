@@ -2,9 +2,9 @@
 
 use core::hint::black_box;
 
-use sinew::kernel::skin::{self, LinearBlock, Rows};
+use sinew::kernel::skin::{self, BLOCK, LinearBlock, Rows};
 use sinew::kernel::spring::{self, Knots, Spring, Step};
-use sinew::kernel::unskin::{self, Limit};
+use sinew::kernel::unskin::{self, Limit, Tissue};
 use sinew::math::activation::{gelu, tanh};
 use sinew::math::affine::{self, IDENTITY};
 use sinew::stage::embed::{self, Surface};
@@ -69,7 +69,7 @@ fn frames(asset: Asset<'_>, memory: &mut [f32], say: Say<'_>) -> Option<[Rows; J
 fn kernels(asset: &Asset<'_>, palette: &[Rows], mut memory: &mut [f32], say: Say<'_>) -> Option<()> {
     let [active, vertices] = [asset.meta.active, asset.meta.vertices].map(|n| n as usize);
     let rest = asset.rest.get(..active)?;
-    let linear = blocks(take::<4>(&mut memory, active.div_ceil(4) * 9)?);
+    let linear = blocks(take(&mut memory, active.div_ceil(BLOCK) * 9)?);
     let mut vectors = |n| take::<3>(&mut memory, n);
     let (targets, f, y, offsets) = (vectors(active)?, vectors(active)?, vectors(active)?, vectors(active)?);
     let (x, v, slope, f0) = (vectors(active)?, vectors(active)?, vectors(active)?, vectors(active)?);
@@ -81,13 +81,14 @@ fn kernels(asset: &Asset<'_>, palette: &[Rows], mut memory: &mut [f32], say: Say
     });
     let step = Step::new(Spring::new(3.0, 0.3), STEP, 0.0);
     count(say, "springs", active, || {
-        let [x, y, v, slope, f0] = [x, &mut *y, v, slope, f0].map(|a| a.as_flattened_mut());
-        spring::advance(&step, targets.as_flattened(), f.as_flattened(), Knots { x, y, v, slope, f: f0 });
+        let [y, v, slope] = [&mut *y, v, slope].map(|a| a.as_flattened_mut());
+        let (x, f) = ([&*x, &*targets].map(<[_]>::as_flattened), [&*f0, &*f].map(<[_]>::as_flattened));
+        spring::advance(&step, Knots { x, f, y, v, slope });
     });
-    let tissue = (asset.softness, asset.region_of_point);
     let limits = [Limit { gain: 1.0, inverse_square: 1.0 }; sinew::asset::layout::MAX_REGIONS];
+    let tissue = Tissue { softness: asset.softness, region: asset.region_of_point, limits: &limits };
     count(say, "offsets to bind space", active, || {
-        unskin::unskin(palette, asset.influences, linear, y, tissue, &limits, offsets);
+        unskin::unskin(palette, asset.influences, linear, y, tissue, offsets);
     });
     let surface = Surface {
         rest: asset.rest,
@@ -106,8 +107,8 @@ fn kernels(asset: &Asset<'_>, palette: &[Rows], mut memory: &mut [f32], say: Say
     Some(())
 }
 
-/// Blocks of linear parts over rows of four floats.
-fn blocks(rows: &mut [[f32; 4]]) -> &mut [LinearBlock] {
+/// Blocks of linear parts over rows of lanes.
+fn blocks(rows: &mut [[f32; BLOCK]]) -> &mut [LinearBlock] {
     rows.as_chunks_mut::<3>().0.as_chunks_mut::<3>().0
 }
 

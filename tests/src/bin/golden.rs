@@ -1,4 +1,5 @@
-//! `golden FOLDER`: the asset and the recording of the golden frames, made on this machine.
+//! `golden FOLDER`: the asset and the recording of the golden frames, and the tube of the microcontroller, made on
+//! this machine.
 
 use sinew::Asset;
 use sinew_bake::pack;
@@ -13,6 +14,7 @@ fn write(folder: &Path) -> io::Result<()> {
     let parsed = Asset::parse(bytemuck::cast_slice(&aligned)).map_err(io::Error::other)?;
     fs::create_dir_all(folder)?;
     fs::write(folder.join("golden.sinew"), &asset)?;
+    fs::write(folder.join("tube.sinew"), bytemuck::cast_slice(&sinew_tests::tube::asset(1.0)))?;
     fs::write(folder.join("golden.replay"), Played::new(parsed).replay)
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn counts_zero() -> Vec<Seen> {
 fn one(section: Section, meta: &Meta) -> Vec<u8> {
     match section {
         Section::JointFromBind => floats([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
-        Section::InfluenceWeights => floats([1.0]),
+        Section::InfluenceWeights => floats([1.0, 0.0, 0.0, 0.0]),
         Section::Normals => floats([0.0, 1.0, 0.0]),
         Section::Regions => floats([3.0, 0.3, 1.0, 0.1]),
         Section::Primitives => words([0, 0, 0, 0, 1, 0]),
@@ -63,6 +63,7 @@ fn one(section: Section, meta: &Meta) -> Vec<u8> {
 pub(crate) fn counts_one() -> Vec<Seen> {
     let meta = meta_of(|w| {
         w[..14].fill(1);
+        w[4] = 4; // influences come in sets of four
         w[12] = 3; // values of the one key
     });
     vec![asset(&pack(&meta, one))]

@@ -34,8 +34,7 @@ pub(super) fn character(wanted: &impl Fn(&str) -> bool) -> Result<Vec<Value>, Er
     let (mut positions, mut normals) = (vec![[0.0; 3]; vertices], vec![[0.0; 3]; vertices]);
     if wanted("skin") {
         let mut skinned = Ok(());
-        let value =
-            best(vertices, || skinned = character.skin_surface(true, &mut positions, &mut normals));
+        let value = best(vertices, || skinned = character.skin_surface(true, &mut positions, &mut normals));
         skinned.map_err(|e| refuse(e.to_string()))?;
         out.push(json!({"name": "skin", "case": "builtin", "value": value, "unit": "ns/vertex",
             "peers": [], "limit": 4.0}));

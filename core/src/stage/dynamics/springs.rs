@@ -121,11 +121,11 @@ impl<'a> State<'a> {
         regions: &[u8],
         steps: &[Step],
     ) {
-        let mut start = 0;
-        for run in regions.chunk_by(|a, b| a == b) {
-            let range = start..start + run.len();
-            start = range.end;
-            let Some(step) = run.first().and_then(|region| steps.get(usize::from(*region))) else { continue };
+        let mut range = 0..0;
+        while let Some([region, rest @ ..]) = regions.get(range.end..) {
+            let others = rest.iter().take_while(|other| *other == region).count();
+            range = range.end..range.end + 1 + others;
+            let Some(step) = steps.get(usize::from(*region)) else { continue };
             let knots = Knots {
                 x: [components(self.x, &range), components(targets, &range)],
                 f: [components(self.f, &range), components(f, &range)],

@@ -1,0 +1,57 @@
+//! What accelerates the flesh besides its springs.
+//!
+//! ```text
+//! f = g − B·g₀
+//! ```
+//!
+//! `g` is gravity and wind in the root's frame, `B·g₀` the gravity that the authored shape already
+//! sags under, turned with the flesh: at rest they cancel, bent over they do not.
+
+use super::skin::{BLOCK, LinearBlock, map_of};
+use crate::dispatch;
+use crate::lanes::block::write;
+use crate::math::{affine, vec3};
+
+/// Accelerations of points, model units per s².
+///
+/// * `gravity`: `g`, root's frame, model units per s²; `authored`: `g₀`, bind space.
+/// * `linear`: `B`, as [`super::skin::skin`] leaves them; `out`: one a point.
+pub fn load(gravity: [f32; 3], authored: [f32; 3], linear: &[LinearBlock], out: &mut [[f32; 3]]) {
+    load_at(dispatch::widest(), gravity, authored, linear, out);
+}
+
+dispatch::copies!(load_at, load_any, (
+    gravity: [f32; 3], authored: [f32; 3], linear: &[LinearBlock], out: &mut [[f32; 3]],
+));
+
+/// The body of each copy of [`load`].
+#[inline(always)]
+fn load_any(gravity: [f32; 3], authored: [f32; 3], linear: &[LinearBlock], out: &mut [[f32; 3]]) {
+    let mut f = [[0.0; BLOCK]; 3];
+    for (linear, out) in linear.iter().zip(out.chunks_mut(BLOCK)) {
+        let [x, y, z] = &mut f;
+        for lane in 0..BLOCK {
+            let [a, b, c] = map_of(linear, lane);
+            let turned = affine::rotate(&[a, b, c, [0.0; 3]], authored);
+            [x[lane], y[lane], z[lane]] = vec3::sub(gravity, turned);
+        }
+        write(&f, out);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half a turn about z: what pulled one way when authored pulls the other way now.
+    #[test]
+    fn gravity_is_felt_by_what_is_turned() {
+        let turn = [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
+        let linear = turn.map(|column| column.map(|x| [x; BLOCK]));
+        for level in dispatch::levels() {
+            let mut out = [[9.0; 3]; 5];
+            load_at(level, [0.0, -10.0, 0.0], [0.0, -10.0, 1.0], &[linear], &mut out);
+            assert_eq!(out, [[0.0, -20.0, -1.0]; 5], "{level:?}");
+        }
+    }
+}
