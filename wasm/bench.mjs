@@ -6,6 +6,9 @@ import { isMainThread, parentPort, Worker, workerData } from 'node:worker_thread
 const SPRINGS = 10_000;
 const FRAMES = 60;
 const ROUNDS = 40;
+const NETWORKS = 1_000;
+/** Inputs and outputs of the network's layers. */
+const LAYERS = [96, 64, 64, 48];
 
 /** Best time of `task` per item, ns: what the code costs when nothing disturbs it. */
 function best(task, items) {
@@ -26,12 +29,14 @@ async function measure({ build, asset: bytes }) {
   stages.initSync({ module: read('pkg-bench') });
   initSync(read('pkg'));
   const springs = new stages.BenchSprings(SPRINGS);
+  const network = new stages.BenchNetwork();
   const asset = new Asset(bytes);
   const character = new Character(asset);
   for (let frame = 0; frame < 10; frame++) character.stepClip(0, frame / 60, 1 / 60);
   let frame = 0;
   return {
     springs: best(() => springs.run(FRAMES), SPRINGS * FRAMES),
+    network: best(() => network.run(NETWORKS), NETWORKS) / 1e3,
     skin: best(() => character.skin(), asset.vertexCount),
     frame: best(() => character.stepClip(0, frame++ / 60, 1 / 60), 1) / 1e6,
   };
@@ -95,6 +100,31 @@ async function springBones() {
   }, chains * length);
 }
 
+/** The same network in plain loops over `Float32Array`s, µs. */
+function plainNetwork() {
+  const layers = LAYERS.slice(1).map((outputs, i) => {
+    const inputs = LAYERS[i];
+    const weights = Float32Array.from({ length: inputs * outputs }, (_, k) => ((k * 37) % 255) * 1e-5 - 1e-3);
+    return { inputs, weights, bias: new Float32Array(outputs).fill(0.01), y: new Float32Array(outputs) };
+  });
+  const x = Float32Array.from({ length: LAYERS[0] }, (_, i) => (i % 17) * 0.05 - 0.4);
+  const once = () => {
+    let input = x;
+    for (const { inputs, weights, bias, y } of layers) {
+      for (let row = 0; row < y.length; row++) {
+        let sum = bias[row];
+        for (let i = 0; i < inputs; i++) sum += weights[row * inputs + i] * input[i];
+        y[row] = Math.max(sum, 0);
+      }
+      input = y;
+    }
+    x[0] = 1e-3 * input[0];
+  };
+  return best(() => {
+    for (let i = 0; i < NETWORKS; i++) once();
+  }, NETWORKS) / 1e3;
+}
+
 async function main() {
   const baker = await import('./js/bake.js');
   await baker.init();
@@ -111,11 +141,14 @@ async function main() {
     { name: 'plain JavaScript loop', value: plain() },
     { name: '@pixiv/three-vrm-springbone, per joint', value: await springBones() },
   ];
+  const loops = [{ name: 'plain JavaScript loop', value: plainNetwork() }];
   const results = [
     { name: 'springs', case: 'wasm simd', value: simd.springs, unit: 'ns/vertex', peers, limit: 8 },
     { name: 'springs', case: 'wasm scalar', value: scalar.springs, unit: 'ns/vertex', peers },
     { name: 'skin', case: 'wasm simd, with normals', value: simd.skin, unit: 'ns/vertex', limit: 12 },
     { name: 'skin', case: 'wasm scalar, with normals', value: scalar.skin, unit: 'ns/vertex' },
+    { name: 'network', case: '96-64-64-48, wasm simd', value: simd.network, unit: 'us', peers: loops, limit: 2 },
+    { name: 'network', case: '96-64-64-48, wasm scalar', value: scalar.network, unit: 'us', peers: loops },
     { name: 'character-frame', case: 'built-in, wasm simd', value: simd.frame, unit: 'ms' },
     { name: 'character-frame', case: 'built-in, wasm scalar', value: scalar.frame, unit: 'ms' },
   ];
@@ -123,10 +156,10 @@ async function main() {
     console.log(JSON.stringify({ machine: `Node ${process.version}, ${process.arch}`, results }));
     return;
   }
-  for (const { name, case: which, value, unit, limit } of results) {
-    console.log(`${name}, ${which}: ${value.toPrecision(3)} ${unit}${limit ? ` (limit ${limit})` : ''}`);
+  for (const { name, case: which, value, unit, limit, peers: others = [] } of results) {
+    const beside = others.map((peer) => `, ${peer.name} ${peer.value.toPrecision(3)}`).join('');
+    console.log(`${name}, ${which}: ${value.toPrecision(3)} ${unit}${limit ? ` (limit ${limit})` : ''}${beside}`);
   }
-  for (const { name, value } of peers) console.log(`  peer: ${name}: ${value.toPrecision(3)} ns`);
 }
 
 if (isMainThread) await main();

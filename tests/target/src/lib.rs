@@ -5,6 +5,7 @@
 
 mod functions;
 pub mod golden;
+mod network;
 mod operations;
 mod threads;
 
@@ -23,6 +24,7 @@ pub fn digests(asset: &[u8], replay: &[u8]) -> Result<Vec<Named>, String> {
     let asset = sinew::Asset::parse_into(asset, &mut words).map_err(|e| format!("asset: {e}"))?;
     let mut all = operations::digests();
     all.extend(functions::digests());
+    all.extend(network::digests());
     golden::verified(asset, replay)?;
     all.extend(golden::Played::new(asset).digests());
     all.extend(threads::digests(asset));
