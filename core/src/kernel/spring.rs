@@ -189,7 +189,7 @@ fn advance_any(
         let (y0, u0) = (*y, *v - *slope);
         let (y1, u1) = (row(wy, y0, u0, e, f0, f1), row(wu, y0, u0, e, f0, f1));
         // A component at rest is set to rest, so that nothing trembles and no subnormal lingers.
-        let resting = (abs(y1) < y_rest) & (abs(u1) < u_rest);
+        let resting = abs(y1) < y_rest && abs(u1) < u_rest;
         *slope = d * inverse;
         *y = if resting { 0.0 } else { y1 };
         *v = if resting { 0.0 } else { u1 } + *slope;
