@@ -1,5 +1,6 @@
 //! One algorithm a file: free functions over slices, the equation above each.
 
+pub mod blend;
 pub mod clip;
 pub mod cofactor;
 pub mod load;

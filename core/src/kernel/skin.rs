@@ -1,99 +1,19 @@
-//! Linear blend skinning, and the rotation that goes with it.
+//! Linear blend skinning.
 //!
 //! ```text
-//! B = Σₖ wₖ·Mⱼₖ,   x = B·p,   n = cof(B₃ₓ₃)·n₀ / |…|,   cof(B) = det(B)·B⁻ᵀ
-//! q = Σₖ wₖ·sₖ·qⱼₖ / |…|,   sₖ = sign of qⱼₖ·q_dominant      (antipodal quaternions agree in sign)
+//! x = B·p,   n = cof(B₃ₓ₃)·n₀ / |…|,   cof(B) = det(B)·B⁻ᵀ
 //! ```
 //!
-//! Influences are sorted by falling weight: the first is the dominant one, and the first zero ends a row.
+//! Point by point, as it is defined; or, where there are vector registers, in blocks with a lane a point.
 
+pub use super::blend::{BLOCK, Influences, LinearBlock, Rows, Vectors};
+use super::blend::{blend, blend_block, dominant_map, linear_of};
 use super::cofactor::{Cofactors, Linear};
 use crate::dispatch;
-pub use crate::lanes::block::{BLOCK, Vectors};
 use crate::lanes::block::{read, write};
-use crate::lanes::{F32x4, Lanes, each, three};
+use crate::lanes::{VECTORS, three};
 use crate::math::float::{max, sqrt};
-use crate::math::{quat, vec3};
-
-/// Rows of a joint's map, model from bind; the last column is the translation.
-pub type Rows = [[f32; 4]; 3];
-
-/// Linear parts of the maps of a block: columns.
-pub type LinearBlock = [Vectors; 3];
-
-/// Joint indices and weights, `sets` of four a point; weights fall and sum to 1.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Influences<'a> {
-    /// Sets a point, at least 1.
-    pub sets: usize,
-    /// Rows of the palette.
-    pub joints: &'a [[u16; 4]],
-    /// Weight of each.
-    pub weights: &'a [[f32; 4]],
-}
-
-impl<'a> Influences<'a> {
-    /// A set of point `i`; weightless for a point past the end.
-    #[inline(always)]
-    fn set(&self, i: usize, set: usize) -> (&'a [u16; 4], &'a [f32; 4]) {
-        let at = i * self.sets + set;
-        match (self.joints.get(at), self.weights.get(at)) {
-            (Some(joints), Some(weights)) => (joints, weights),
-            _ => (&[0; 4], &[0.0; 4]),
-        }
-    }
-
-    /// Joint with the largest weight at point `i`.
-    #[must_use]
-    pub fn dominant(&self, i: usize) -> usize {
-        usize::from(self.set(i, 0).0[0])
-    }
-}
-
-/// Blended maps `B` of the points `point(0)` to `point(n − 1)`, to columns of linear part and translation.
-///
-/// A joint past the palette's end does not count.
-#[inline(always)]
-fn blend<L: Lanes>(
-    palette: &[Rows],
-    influences: &Influences<'_>,
-    (n, point): (usize, impl Fn(usize) -> usize),
-    columns: [&mut Vectors; 4],
-) {
-    for group in (0..BLOCK / 4).take(n.div_ceil(4)) {
-        let points = each(|lane| point((4 * group + lane).min(n - 1)));
-        let b = blend_four::<L>(palette, influences, points);
-        for r in 0..3 {
-            let rows = L::transpose(each(|lane| b[lane][r]));
-            for c in 0..4 {
-                columns[c][r].as_chunks_mut().0[group] = rows[c].to_array();
-            }
-        }
-    }
-}
-
-/// Rows of the maps of four points. A weight of 0 adds nothing: the longest row decides for all four.
-#[inline(always)]
-fn blend_four<L: Lanes>(palette: &[Rows], influences: &Influences<'_>, points: [usize; 4]) -> [[L; 3]; 4] {
-    let mut b = [[L::splat(0.0); 3]; 4];
-    for set in 0..influences.sets {
-        let rows = each(|lane| influences.set(points[lane], set));
-        for k in 0..4 {
-            let [x, y, z, w] = each(|lane| rows[lane].1[k].to_bits());
-            if x | y | z | w == 0 {
-                return b;
-            }
-            for lane in 0..4 {
-                let (joints, weights) = rows[lane];
-                if let Some(m) = palette.get(usize::from(joints[k])) {
-                    let w = L::splat(weights[k]);
-                    b[lane] = three(|r| b[lane][r] + w * L::from_array(m[r]));
-                }
-            }
-        }
-    }
-    b
-}
+use crate::math::vec3;
 
 /// The vector of a lane.
 #[inline(always)]
@@ -125,16 +45,41 @@ pub fn skin(
     out: &mut [[f32; 3]],
     linear: &mut [LinearBlock],
 ) {
-    skin_at(dispatch::widest(), palette, influences, rest, out, linear);
+    if VECTORS {
+        skin_blocks_at(dispatch::widest(), palette, influences, rest, out, linear);
+    } else {
+        skin_each(palette, influences, rest, out, linear);
+    }
 }
 
-dispatch::copies!(skin_at, skin_any::<F32x4>, (
+/// The definition of [`skin`].
+fn skin_each(
+    palette: &[Rows],
+    influences: Influences<'_>,
+    rest: &[[f32; 3]],
+    out: &mut [[f32; 3]],
+    linear: &mut [LinearBlock],
+) {
+    let blocks = rest.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).zip(linear);
+    for (start, ((rest, out), linear)) in (0..).step_by(BLOCK).zip(blocks) {
+        for (lane, (rest, out)) in (0..BLOCK).zip(rest.iter().zip(out)) {
+            let b = blend(palette, &influences, start + lane);
+            let m = linear_of(&b);
+            *out = apply(&m, b.map(|row| row[3]), *rest);
+            for c in 0..3 {
+                (linear[c][0][lane], linear[c][1][lane], linear[c][2][lane]) = m[c].into();
+            }
+        }
+    }
+}
+
+dispatch::copies!(skin_blocks_at, skin_blocks, (
     palette: &[Rows], influences: Influences<'_>, rest: &[[f32; 3]], out: &mut [[f32; 3]], linear: &mut [LinearBlock],
 ));
 
-/// [`skin`] on a given lane type.
+/// [`skin`] by blocks.
 #[inline(always)]
-fn skin_any<L: Lanes>(
+fn skin_blocks(
     palette: &[Rows],
     influences: Influences<'_>,
     rest: &[[f32; 3]],
@@ -146,7 +91,7 @@ fn skin_any<L: Lanes>(
     for (start, ((rest, out), linear)) in (0..).step_by(BLOCK).zip(blocks) {
         let [a, b, c] = linear;
         let points = (rest.len(), |lane| start + lane);
-        blend::<L>(palette, &influences, points, [a, b, c, &mut t]);
+        blend_block(palette, &influences, points, [a, b, c, &mut t]);
         read(rest, &mut p);
         for lane in 0..BLOCK {
             let moved = apply(&map_of(linear, lane), vector_of(&t, lane), vector_of(&p, lane));
@@ -167,31 +112,66 @@ pub fn skin_surface(
     positions: &mut [[f32; 3]],
     normals: &mut [[f32; 3]],
 ) {
-    skin_surface_at(dispatch::widest(), palette, influences, point_of_vertex, positions, normals);
+    // |cof(B)·n|² is of the order of the fourth power of the columns.
+    let least = 1e-12 * longest_square(palette) * longest_square(palette);
+    if VECTORS {
+        surface_blocks_at(
+            dispatch::widest(),
+            palette,
+            influences,
+            point_of_vertex,
+            least,
+            positions,
+            normals,
+        );
+    } else {
+        surface_each(palette, influences, point_of_vertex, least, positions, normals);
+    }
 }
 
-dispatch::copies!(skin_surface_at, skin_surface_any::<F32x4>, (
-    palette: &[Rows], influences: Influences<'_>, points: &[u32], positions: &mut [[f32; 3]], normals: &mut [[f32; 3]],
-));
-
-/// [`skin_surface`] on a given lane type.
-#[inline(always)]
-fn skin_surface_any<L: Lanes>(
+/// The definition of [`skin_surface`]: normals whose square would not be above `least` follow the dominant joint.
+fn surface_each(
     palette: &[Rows],
     influences: Influences<'_>,
-    point_of_vertex: &[u32],
+    points: &[u32],
+    least: f32,
     positions: &mut [[f32; 3]],
     normals: &mut [[f32; 3]],
 ) {
-    // |cof(B)·n|² is of the order of the fourth power of the columns.
-    let least = 1e-12 * longest_square(palette) * longest_square(palette);
+    for (point, (position, normal)) in points.iter().zip(positions.iter_mut().zip(normals)) {
+        let b = blend(palette, &influences, *point as usize);
+        let m = linear_of(&b);
+        *position = apply(&m, b.map(|row| row[3]), *position);
+        let (turned, usable) = turn_normal(&m, *normal, least);
+        *normal = turned;
+        if !usable {
+            *normal = turn_normal(&dominant_map(palette, &influences, *point as usize), turned, 0.0).0;
+        }
+    }
+}
+
+dispatch::copies!(surface_blocks_at, surface_blocks, (
+    palette: &[Rows], influences: Influences<'_>, points: &[u32], least: f32, positions: &mut [[f32; 3]],
+    normals: &mut [[f32; 3]],
+));
+
+/// [`skin_surface`] by blocks.
+#[inline(always)]
+fn surface_blocks(
+    palette: &[Rows],
+    influences: Influences<'_>,
+    point_of_vertex: &[u32],
+    least: f32,
+    positions: &mut [[f32; 3]],
+    normals: &mut [[f32; 3]],
+) {
     let ([mut t, mut p, mut n], mut linear) = ([[[0.0; BLOCK]; 3]; 3], [[[0.0; BLOCK]; 3]; 3]);
     let mut usable = [true; BLOCK];
     let surface = positions.chunks_mut(BLOCK).zip(normals.chunks_mut(BLOCK));
     for (points, (positions, normals)) in point_of_vertex.chunks(BLOCK).zip(surface) {
         let point = |lane| points.get(lane).map_or(0, |point| *point as usize);
         let [a, b, c] = &mut linear;
-        blend::<L>(palette, &influences, (points.len(), point), [a, b, c, &mut t]);
+        blend_block(palette, &influences, (points.len(), point), [a, b, c, &mut t]);
         read(positions, &mut p);
         read(normals, &mut n);
         for lane in 0..BLOCK {
@@ -214,19 +194,6 @@ fn skin_surface_any<L: Lanes>(
     }
 }
 
-/// Columns of the linear part of a joint's map.
-#[inline(always)]
-fn linear_of(m: &Rows) -> Linear {
-    three(|c| three(|r| m[r][c]))
-}
-
-/// The linear map of the joint with the largest weight at point `i`. Rare, and kept out of the way.
-#[cold]
-#[inline(never)]
-pub(crate) fn dominant_map(palette: &[Rows], influences: &Influences<'_>, i: usize) -> Linear {
-    palette.get(influences.dominant(i)).map_or([[0.0; 3]; 3], linear_of)
-}
-
 /// Square of the longest column of the linear parts.
 fn longest_square(palette: &[Rows]) -> f32 {
     let columns = palette.iter().flat_map(linear_of);
@@ -244,25 +211,12 @@ fn turn_normal(m: &Linear, n: [f32; 3], least: f32) -> ([f32; 3], bool) {
     (three(|k| if usable { turned[k] * scale } else { n[k] }), usable)
 }
 
-/// Blended rotation of point `i` from the joints' unit quaternions; the dominant joint's where the sum vanishes.
-#[must_use]
-pub fn blend_rotation(rotations: &[[f32; 4]], influences: Influences<'_>, i: usize) -> [f32; 4] {
-    let dominant = rotations.get(influences.dominant(i)).copied().unwrap_or(quat::IDENTITY);
-    let mut sum = [0.0_f32; 4];
-    let rows = (0..influences.sets).map(|set| influences.set(i, set));
-    for (joint, weight) in rows.flat_map(|(joints, weights)| joints.iter().zip(weights)) {
-        let q = rotations.get(usize::from(*joint)).copied().unwrap_or_default();
-        let w = if quat::dot(q, dominant) < 0.0 { -weight } else { *weight };
-        sum = core::array::from_fn(|c| sum[c] + w * q[c]);
-    }
-    if quat::dot(sum, sum) < 1e-6 { dominant } else { quat::normalize(sum) }
-}
-
 #[cfg(test)]
 mod tests {
     extern crate std;
     use super::*;
     use crate::math::affine::{self, to_rows};
+    use crate::math::quat;
     use std::vec;
     use std::vec::Vec;
 
@@ -304,27 +258,13 @@ mod tests {
         assert_eq!(n[0], [1.0, 0.0, 0.0]);
     }
 
-    #[test]
-    fn antipodal_quaternions_blend_as_the_same_rotation() {
-        let (a, b) = (turn(0.4), turn(0.6));
-        let influences = Influences { sets: 1, joints: &[[0, 1, 0, 0]], weights: &[[0.5, 0.5, 0.0, 0.0]] };
-        let plain = blend_rotation(&[a, b], influences, 0);
-        let flipped = blend_rotation(&[a, b.map(|c| -c)], influences, 0);
-        assert_eq!(plain, flipped);
-        assert!(quat::dot(plain, turn(0.5)) > 1.0 - 1e-6, "{plain:?}");
-        let opposite = blend_rotation(&[turn(0.0), turn(0.0).map(|c| -c)], influences, 0);
-        assert_eq!(opposite, turn(0.0));
-    }
-
     /// Skins vertices in place: points, positions, normals.
     type Skin<'a> = &'a dyn Fn(&[u32], &mut [[f32; 3]], &mut [[f32; 3]]);
-    type Kernel = fn(&[Rows], Influences<'_>, &[u32], &mut [[f32; 3]], &mut [[f32; 3]]);
 
-    /// A vertex has the same bits in a block, in the tail and alone, in each copy that this machine can run and on
-    /// scalar lanes, beside a flattened blend too.
+    /// A vertex has the same bits in a block, in the tail and alone, in each copy that this machine can run and as
+    /// defined, beside a flattened blend too.
     #[test]
     fn a_vertex_does_not_depend_on_its_place() {
-        use crate::lanes::Scalar;
         let turned =
             |i: u8| affine::from_trs([f32::from(i), 0.1, -0.2], turn(0.7 * f32::from(i)), [1.0, 1.3, -0.8]);
         let mut palette: Vec<Rows> = (0..5).map(|i| to_rows(&turned(i))).collect();
@@ -345,20 +285,27 @@ mod tests {
             kernel(points, &mut p, &mut n);
             p.into_iter().zip(n).map(|vertex| <[_; 2]>::from(vertex).map(|v| v.map(f32::to_bits)))
         };
-        let plain: Kernel = skin_surface_any::<Scalar>;
+        let least = 1e-12 * longest_square(&palette) * longest_square(&palette);
         let all: Vec<u32> = (0..u32::from(n)).collect();
-        let alone = |vertex: &u32| run(&[*vertex], &|v, p, n| plain(&palette, influences, v, p, n)).next();
+        let alone = |vertex: &u32| {
+            run(&[*vertex], &|v, p, n| surface_each(&palette, influences, v, least, p, n)).next()
+        };
         let want: Vec<_> = all.iter().filter_map(alone).collect();
         for count in 0..all.len() {
             let from = all.len() - count;
             for level in dispatch::levels() {
                 let found: Vec<_> = run(&all[from..], &|v, p, n| {
-                    skin_surface_at(level, &palette, influences, v, p, n);
+                    surface_blocks_at(level, &palette, influences, v, least, p, n);
                 })
                 .collect();
                 assert_eq!(found, want[from..], "{level:?}: {count} vertices");
                 let (mut out, mut linear) = (vec![[9.0; 3]; count], vec![[[[0.0; BLOCK]; 3]; 3]; 3]);
-                skin_at(level, &palette, influences, &rest[..count], &mut out, &mut linear);
+                skin_blocks_at(level, &palette, influences, &rest[..count], &mut out, &mut linear);
+                let (mut each, mut maps) = (out.clone(), linear.clone());
+                skin_each(&palette, influences, &rest[..count], &mut each, &mut maps);
+                let lanes = |maps: &[LinearBlock], i: usize| map_of(&maps[i / BLOCK], i % BLOCK);
+                assert_eq!(each, out, "{level:?}: {count} points");
+                (0..count).for_each(|i| assert_eq!(lanes(&maps, i), lanes(&linear, i), "{level:?}: map {i}"));
                 let bits: Vec<_> = out.iter().map(|p| p.map(f32::to_bits)).collect();
                 let first: Vec<_> = want.iter().take(count).map(|[p, _]| *p).collect();
                 assert_eq!(bits, first, "{level:?}: {count} points");

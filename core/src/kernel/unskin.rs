@@ -7,8 +7,9 @@
 //! `w` is the point's softness times its region's gain, `L` the region's largest offset: small
 //! offsets pass unchanged, none grows beyond `w·L`, and there is no kink between.
 
+use super::blend::{BLOCK, Influences, LinearBlock, Rows, dominant_map};
 use super::cofactor::{Cofactors, Linear};
-use super::skin::{BLOCK, Influences, LinearBlock, Rows, dominant_map, map_of, vector_of};
+use super::skin::{map_of, vector_of};
 use super::tiny::LEAST;
 use crate::dispatch;
 use crate::lanes::block::{read, write};
