@@ -13,7 +13,7 @@ use super::skin::{map_of, vector_of};
 use super::tiny::LEAST;
 use crate::dispatch;
 use crate::lanes::block::{read, write};
-use crate::lanes::three;
+use crate::lanes::{VECTORS, three};
 use crate::math::float::{abs, sqrt};
 use crate::math::vec3::dot;
 
@@ -40,6 +40,15 @@ pub struct Tissue<'a> {
     pub limits: &'a [Limit],
 }
 
+impl Tissue<'_> {
+    /// Limit of a region; one that does not exist shows nothing.
+    #[inline(always)]
+    fn limit(&self, region: u8) -> Limit {
+        let none = Limit { gain: 0.0, inverse_square: 0.0 };
+        self.limits.get(usize::from(region)).copied().unwrap_or(none)
+    }
+}
+
 /// Takes the offsets `y` (model space) of points to bind space.
 ///
 /// * `palette`, `influences`: as in [`super::skin::skin`]; read only where a blended map has no inverse.
@@ -53,17 +62,43 @@ pub fn unskin(
     tissue: Tissue<'_>,
     out: &mut [[f32; 3]],
 ) {
-    unskin_at(dispatch::widest(), palette, influences, linear, y, tissue, out);
+    if VECTORS {
+        unskin_blocks_at(dispatch::widest(), palette, influences, linear, y, tissue, out);
+    } else {
+        unskin_each(palette, influences, linear, y, tissue, out);
+    }
 }
 
-dispatch::copies!(unskin_at, unskin_any, (
+/// The definition of [`unskin`].
+fn unskin_each(
+    palette: &[Rows],
+    influences: Influences<'_>,
+    linear: &[LinearBlock],
+    y: &[[f32; 3]],
+    tissue: Tissue<'_>,
+    out: &mut [[f32; 3]],
+) {
+    let maps = linear.iter().flat_map(|linear| (0..BLOCK).map(|lane| map_of(linear, lane)));
+    let tissues = tissue.softness.iter().zip(tissue.region);
+    for (i, (((y, out), m), (softness, region))) in y.iter().zip(out).zip(maps).zip(tissues).enumerate() {
+        let limit = tissue.limit(*region);
+        let soft = softness * limit.gain;
+        let (shown, regular) = show(&m, *y, soft, limit.inverse_square);
+        *out = shown;
+        if !regular {
+            *out = show(&dominant_map(palette, &influences, i), *y, soft, limit.inverse_square).0;
+        }
+    }
+}
+
+dispatch::copies!(unskin_blocks_at, unskin_blocks, (
     palette: &[Rows], influences: Influences<'_>, linear: &[LinearBlock], y: &[[f32; 3]], tissue: Tissue<'_>,
     out: &mut [[f32; 3]],
 ));
 
-/// The body of each copy of [`unskin`].
+/// [`unskin`] by blocks.
 #[inline(always)]
-fn unskin_any(
+fn unskin_blocks(
     palette: &[Rows],
     influences: Influences<'_>,
     linear: &[LinearBlock],
@@ -77,9 +112,8 @@ fn unskin_any(
     let tissues = tissue.softness.chunks(BLOCK).zip(tissue.region.chunks(BLOCK));
     for (start, (((y, out), linear), (softness, region))) in (0..).step_by(BLOCK).zip(points.zip(tissues)) {
         for (lane, (softness, region)) in (0..BLOCK).zip(softness.iter().zip(region)) {
-            if let Some(limit) = tissue.limits.get(usize::from(*region)) {
-                (soft[lane], inverse_square[lane]) = (softness * limit.gain, limit.inverse_square);
-            }
+            let limit = tissue.limit(*region);
+            (soft[lane], inverse_square[lane]) = (softness * limit.gain, limit.inverse_square);
         }
         read(y, &mut v);
         for lane in 0..BLOCK {
@@ -145,13 +179,13 @@ mod tests {
         let tissue = Tissue { softness: &softness, region: &region, limits: &LIMITS };
         let one = |level| {
             let mut out = std::vec![[f32::NAN; 3]; usize::from(n)];
-            unskin_at(level, &[identity], influences, &linear, &y, tissue, &mut out);
+            unskin_blocks_at(level, &[identity], influences, &linear, &y, tissue, &mut out);
             out
         };
-        let mut all = dispatch::levels().map(one);
-        let first = all.next().unwrap_or_default();
-        all.for_each(|other| assert_eq!(first, other, "copies agree"));
-        first
+        let mut each = std::vec![[f32::NAN; 3]; usize::from(n)];
+        unskin_each(&[identity], influences, &linear, &y, tissue, &mut each);
+        dispatch::levels().for_each(|level| assert_eq!(one(level), each, "{level:?}"));
+        each
     }
 
     #[test]
