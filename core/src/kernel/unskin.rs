@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn bits_do_not_depend_on_the_count_or_on_a_singular_neighbour() {
         let all = run(67, None);
-        for n in 0..67 {
+        for n in (0..67).step_by(if cfg!(miri) { 13 } else { 1 }) {
             assert_eq!(run(n, None), all[..usize::from(n)], "{n} points");
         }
         for singular in [5, 40, 66] {
