@@ -8,6 +8,7 @@
 //! Influences are sorted by falling weight: the first is the dominant one, and the first zero ends a row.
 
 use super::cofactor::Linear;
+use crate::lanes::block::put;
 pub use crate::lanes::block::{BLOCK, Vectors};
 use crate::lanes::{each, three};
 use crate::math::quat;
@@ -72,17 +73,17 @@ pub(crate) fn blend_block(
     palette: &[Rows],
     influences: &Influences<'_>,
     (n, point): (usize, impl Fn(usize) -> usize),
-    columns: [&mut Vectors; 4],
+    [a, b, c, t]: [&mut Vectors; 4],
 ) {
     for group in (0..BLOCK / 4).take(n.div_ceil(4)) {
         let points = each(|lane| point((4 * group + lane).min(n - 1)));
-        let b = blend_four(palette, influences, points);
-        for r in 0..3 {
-            let rows = f32x4::transpose(each(|lane| b[lane][r]));
-            for c in 0..4 {
-                columns[c][r].as_chunks_mut().0[group] = rows[c].to_array();
-            }
-        }
+        let maps = blend_four(palette, influences, points);
+        let rows = three(|r| f32x4::transpose(each(|lane| maps[lane][r])));
+        // Written out: a loop that is not unrolled would keep all of it in memory.
+        put(a, group, three(|r| rows[r][0]));
+        put(b, group, three(|r| rows[r][1]));
+        put(c, group, three(|r| rows[r][2]));
+        put(t, group, three(|r| rows[r][3]));
     }
 }
 
@@ -97,13 +98,12 @@ fn blend_four(palette: &[Rows], influences: &Influences<'_>, points: [usize; 4])
             if x | y | z | w == 0 {
                 return b;
             }
-            for lane in 0..4 {
-                let (joints, weights) = rows[lane];
-                if let Some(m) = palette.get(usize::from(joints[k])) {
-                    let w = f32x4::splat(weights[k]);
-                    b[lane] = three(|r| b[lane][r] + w * f32x4::from(m[r]));
-                }
-            }
+            b = each(|lane| {
+                let ((joints, weights), b) = (rows[lane], b[lane]);
+                let Some(m) = palette.get(usize::from(joints[k])) else { return b };
+                let w = f32x4::splat(weights[k]);
+                three(|r| b[r] + w * f32x4::from(m[r]))
+            });
         }
     }
     b

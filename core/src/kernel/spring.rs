@@ -19,6 +19,7 @@
 use super::target::Target;
 use super::tiny::flush_all;
 use crate::dispatch;
+use crate::lanes::VECTORS;
 use crate::math::float::{abs, max, min, sqrt};
 use crate::math::psi::{cut, psi_wide};
 use crate::math::twin::Twin;
@@ -189,7 +190,9 @@ fn advance_any(
         let (y0, u0) = (*y, *v - *slope);
         let (y1, u1) = (row(wy, y0, u0, e, f0, f1), row(wu, y0, u0, e, f0, f1));
         // A component at rest is set to rest, so that nothing trembles and no subnormal lingers.
-        let resting = abs(y1) < y_rest && abs(u1) < u_rest;
+        let (slow, near) = (abs(u1) < u_rest, abs(y1) < y_rest);
+        // A branch keeps a loop from vectors; without them it is shorter.
+        let resting = if VECTORS { near & slow } else { near && slow };
         *slope = d * inverse;
         *y = if resting { 0.0 } else { y1 };
         *v = if resting { 0.0 } else { u1 } + *slope;
