@@ -3,6 +3,7 @@
 use crate::asset::Asset;
 use crate::asset::layout::MAX_REGIONS;
 use crate::kernel::clip::Channels;
+use crate::kernel::copy::copy;
 use crate::kernel::skin::{self, Rows};
 use crate::kernel::spring::{Spring, Step};
 use crate::kernel::tiny::{flush, flush_all};
@@ -364,8 +365,8 @@ impl<'a> Character<'a> {
             }
         }
         if flesh {
-            positions.iter_mut().zip(&*m.positions).for_each(|(to, from)| *to = *from);
-            normals.iter_mut().zip(&*m.normals).for_each(|(to, from)| *to = *from);
+            copy(m.positions, positions);
+            copy(m.normals, normals);
         } else {
             embed::rest(surface(asset), positions, normals);
         }

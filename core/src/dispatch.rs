@@ -63,7 +63,8 @@ pub(crate) fn levels() -> impl Iterator<Item = Level> {
 /// `$at` runs the copy of the kernel `$any` for the instructions of a level.
 macro_rules! copies {
     ($at:ident, $any:path, ($($arg:ident: $type:ty),+ $(,)?)) => {
-        #[inline]
+        // One copy, however often it is called.
+        #[inline(never)]
         #[allow(unused_variables, reason = "other processors have no choice")]
         #[allow(clippy::too_many_arguments, reason = "as many as the kernel's")]
         #[allow(unsafe_code, reason = "instructions that not every processor has")]

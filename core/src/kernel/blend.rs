@@ -8,8 +8,8 @@
 //! Influences are sorted by falling weight: the first is the dominant one, and the first zero ends a row.
 
 use super::cofactor::Linear;
-use crate::lanes::block::put;
 pub use crate::lanes::block::{BLOCK, Vectors};
+use crate::lanes::block::{after, put};
 use crate::lanes::{each, three};
 use crate::math::quat;
 use wide::f32x4;
@@ -42,6 +42,12 @@ impl<'a> Influences<'a> {
         }
     }
 
+    /// Those of the points from `i` on.
+    pub(crate) fn after(&self, i: usize) -> Self {
+        let sets = i * self.sets;
+        Self { sets: self.sets, joints: after(self.joints, sets), weights: after(self.weights, sets) }
+    }
+
     /// Joint with the largest weight at point `i`.
     #[must_use]
     pub fn dominant(&self, i: usize) -> usize {
@@ -67,17 +73,16 @@ pub(crate) fn blend(palette: &[Rows], influences: &Influences<'_>, i: usize) -> 
     b
 }
 
-/// [`blend`] of the points `point(0)` to `point(n − 1)`, to columns of linear part and translation: four at a time.
+/// [`blend`] of the points `point(lane)` to columns of linear part and translation, four at a time.
 #[inline(always)]
 pub(crate) fn blend_block(
     palette: &[Rows],
     influences: &Influences<'_>,
-    (n, point): (usize, impl Fn(usize) -> usize),
+    point: impl Fn(usize) -> usize,
     [a, b, c, t]: [&mut Vectors; 4],
 ) {
-    for group in (0..BLOCK / 4).take(n.div_ceil(4)) {
-        let points = each(|lane| point((4 * group + lane).min(n - 1)));
-        let maps = blend_four(palette, influences, points);
+    for group in 0..BLOCK / 4 {
+        let maps = blend_four(palette, influences, each(|lane| point(4 * group + lane)));
         let rows = three(|r| f32x4::transpose(each(|lane| maps[lane][r])));
         // Written out: a loop that is not unrolled would keep all of it in memory.
         put(a, group, three(|r| rows[r][0]));

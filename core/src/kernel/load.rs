@@ -27,15 +27,22 @@ dispatch::copies!(load_at, load_any, (
 /// The body of each copy of [`load`].
 #[inline(always)]
 fn load_any(gravity: [f32; 3], authored: [f32; 3], linear: &[LinearBlock], out: &mut [[f32; 3]]) {
-    let mut f = [[0.0; BLOCK]; 3];
-    for (linear, out) in linear.iter().zip(out.chunks_mut(BLOCK)) {
+    let of = |linear: &LinearBlock, lane| {
+        let [a, b, c] = map_of(linear, lane);
+        vec3::sub(gravity, affine::rotate(&[a, b, c, [0.0; 3]], authored))
+    };
+    let (blocks, rest) = out.as_chunks_mut();
+    let last = linear.get(blocks.len());
+    for (linear, out) in linear.iter().zip(blocks) {
+        let mut f = [[0.0; BLOCK]; 3];
         let [x, y, z] = &mut f;
         for lane in 0..BLOCK {
-            let [a, b, c] = map_of(linear, lane);
-            let turned = affine::rotate(&[a, b, c, [0.0; 3]], authored);
-            [x[lane], y[lane], z[lane]] = vec3::sub(gravity, turned);
+            [x[lane], y[lane], z[lane]] = of(linear, lane);
         }
         write(&f, out);
+    }
+    if let Some(linear) = last {
+        (0..).zip(rest).for_each(|(lane, out)| *out = of(linear, lane));
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod blend;
 pub mod clip;
 pub mod cofactor;
+pub(crate) mod copy;
 pub mod load;
 pub mod mlp;
 pub mod normal;

@@ -9,8 +9,9 @@
 pub use super::blend::{BLOCK, Influences, LinearBlock, Rows, Vectors};
 use super::blend::{blend, blend_block, dominant_map, linear_of};
 use super::cofactor::{Cofactors, Linear};
-use crate::dispatch;
-use crate::lanes::block::{read, write};
+use super::copy::copy;
+use crate::dispatch::{self, Level};
+use crate::lanes::block::{filled, read, write};
 use crate::lanes::{VECTORS, three};
 use crate::math::float::{max, sqrt};
 use crate::math::vec3;
@@ -45,10 +46,29 @@ pub fn skin(
     out: &mut [[f32; 3]],
     linear: &mut [LinearBlock],
 ) {
-    if VECTORS {
-        skin_blocks_at(dispatch::widest(), palette, influences, rest, out, linear);
-    } else {
-        skin_each(palette, influences, rest, out, linear);
+    skin_at(dispatch::widest(), palette, influences, rest, out, linear);
+}
+
+/// [`skin`] on some registers.
+fn skin_at(
+    level: Level,
+    palette: &[Rows],
+    influences: Influences<'_>,
+    rest: &[[f32; 3]],
+    out: &mut [[f32; 3]],
+    linear: &mut [LinearBlock],
+) {
+    if !VECTORS {
+        return skin_each(palette, influences, rest, out, linear);
+    }
+    skin_blocks_at(level, palette, influences, rest, out, linear);
+    let n = rest.len().min(out.len()).min(linear.len() * BLOCK);
+    let whole = n / BLOCK * BLOCK;
+    if whole < n {
+        let mut last = [[0.0; 3]; BLOCK];
+        let (influences, linear) = (influences.after(whole), &mut linear[whole / BLOCK..]);
+        skin_blocks_at(level, palette, influences, &filled(&rest[whole..n]), &mut last, linear);
+        copy(&last, &mut out[whole..n]);
     }
 }
 
@@ -77,7 +97,7 @@ dispatch::copies!(skin_blocks_at, skin_blocks, (
     palette: &[Rows], influences: Influences<'_>, rest: &[[f32; 3]], out: &mut [[f32; 3]], linear: &mut [LinearBlock],
 ));
 
-/// [`skin`] by blocks.
+/// [`skin`] of whole blocks.
 #[inline(always)]
 fn skin_blocks(
     palette: &[Rows],
@@ -86,13 +106,11 @@ fn skin_blocks(
     out: &mut [[f32; 3]],
     linear: &mut [LinearBlock],
 ) {
-    let [mut t, mut p] = [[[0.0; BLOCK]; 3]; 2];
-    let blocks = rest.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).zip(linear);
-    for (start, ((rest, out), linear)) in (0..).step_by(BLOCK).zip(blocks) {
-        let [a, b, c] = linear;
-        let points = (rest.len(), |lane| start + lane);
-        blend_block(palette, &influences, points, [a, b, c, &mut t]);
-        read(rest, &mut p);
+    let points = rest.as_chunks().0.iter().zip(out.as_chunks_mut().0).zip(linear);
+    for (start, ((rest, out), linear)) in (0..).step_by(BLOCK).zip(points) {
+        let (mut t, [a, b, c]) = ([[0.0; BLOCK]; 3], &mut *linear);
+        blend_block(palette, &influences, |lane| start + lane, [a, b, c, &mut t]);
+        let mut p = read(rest);
         for lane in 0..BLOCK {
             let moved = apply(&map_of(linear, lane), vector_of(&t, lane), vector_of(&p, lane));
             (p[0][lane], p[1][lane], p[2][lane]) = moved.into();
@@ -114,22 +132,36 @@ pub fn skin_surface(
 ) {
     // |cof(B)·n|² is of the order of the fourth power of the columns.
     let least = 1e-12 * longest_square(palette) * longest_square(palette);
-    if VECTORS {
-        surface_blocks_at(
-            dispatch::widest(),
-            palette,
-            influences,
-            point_of_vertex,
-            least,
-            positions,
-            normals,
-        );
-    } else {
-        surface_each(palette, influences, point_of_vertex, least, positions, normals);
+    surface_at(dispatch::widest(), palette, influences, point_of_vertex, least, positions, normals);
+}
+
+/// [`skin_surface`] on some registers: normals whose square would not be above `least` follow the dominant joint.
+fn surface_at(
+    level: Level,
+    palette: &[Rows],
+    influences: Influences<'_>,
+    points: &[u32],
+    least: f32,
+    positions: &mut [[f32; 3]],
+    normals: &mut [[f32; 3]],
+) {
+    if !VECTORS {
+        return surface_each(palette, influences, points, least, positions, normals);
+    }
+    let n = points.len().min(positions.len()).min(normals.len());
+    let (points, positions, normals) = (&points[..n], &mut positions[..n], &mut normals[..n]);
+    surface_blocks_at(level, palette, influences, points, least, positions, normals);
+    let whole = n / BLOCK * BLOCK;
+    if whole < n {
+        let (positions, normals) = (&mut positions[whole..], &mut normals[whole..]);
+        let (mut p, mut v) = (filled(positions), filled(normals));
+        surface_blocks_at(level, palette, influences, &filled(&points[whole..]), least, &mut p, &mut v);
+        copy(&p, positions);
+        copy(&v, normals);
     }
 }
 
-/// The definition of [`skin_surface`]: normals whose square would not be above `least` follow the dominant joint.
+/// The definition of [`skin_surface`].
 fn surface_each(
     palette: &[Rows],
     influences: Influences<'_>,
@@ -155,25 +187,23 @@ dispatch::copies!(surface_blocks_at, surface_blocks, (
     normals: &mut [[f32; 3]],
 ));
 
-/// [`skin_surface`] by blocks.
+/// [`skin_surface`] of whole blocks.
 #[inline(always)]
 fn surface_blocks(
     palette: &[Rows],
     influences: Influences<'_>,
-    point_of_vertex: &[u32],
+    points: &[u32],
     least: f32,
     positions: &mut [[f32; 3]],
     normals: &mut [[f32; 3]],
 ) {
-    let ([mut t, mut p, mut n], mut linear) = ([[[0.0; BLOCK]; 3]; 3], [[[0.0; BLOCK]; 3]; 3]);
-    let mut usable = [true; BLOCK];
-    let surface = positions.chunks_mut(BLOCK).zip(normals.chunks_mut(BLOCK));
-    for (points, (positions, normals)) in point_of_vertex.chunks(BLOCK).zip(surface) {
-        let point = |lane| points.get(lane).map_or(0, |point| *point as usize);
+    let (mut linear, mut t) = ([[[0.0; BLOCK]; 3]; 3], [[0.0; BLOCK]; 3]);
+    let surface = positions.as_chunks_mut().0.iter_mut().zip(normals.as_chunks_mut().0);
+    for (points, (positions, normals)) in points.as_chunks::<BLOCK>().0.iter().zip(surface) {
+        let point = |lane: usize| points[lane] as usize;
         let [a, b, c] = &mut linear;
-        blend_block(palette, &influences, (points.len(), point), [a, b, c, &mut t]);
-        read(positions, &mut p);
-        read(normals, &mut n);
+        blend_block(palette, &influences, point, [a, b, c, &mut t]);
+        let (mut p, mut n, mut usable) = (read(positions), read(normals), [true; BLOCK]);
         for lane in 0..BLOCK {
             let m = map_of(&linear, lane);
             let moved = apply(&m, vector_of(&t, lane), vector_of(&p, lane));
@@ -185,8 +215,7 @@ fn surface_blocks(
         write(&p, positions);
         write(&n, normals);
         if usable != [true; BLOCK] {
-            let flat = (0..).zip(normals).zip(usable).filter(|(_, usable)| !usable);
-            for ((lane, normal), _) in flat {
+            for ((lane, normal), _) in (0..).zip(normals).zip(usable).filter(|(_, usable)| !usable) {
                 let m = dominant_map(palette, &influences, point(lane));
                 *normal = turn_normal(&m, *normal, 0.0).0;
             }
@@ -296,12 +325,12 @@ mod tests {
             let from = all.len() - count;
             for level in dispatch::levels() {
                 let found: Vec<_> = run(&all[from..], &|v, p, n| {
-                    surface_blocks_at(level, &palette, influences, v, least, p, n);
+                    surface_at(level, &palette, influences, v, least, p, n);
                 })
                 .collect();
                 assert_eq!(found, want[from..], "{level:?}: {count} vertices");
                 let (mut out, mut linear) = (vec![[9.0; 3]; count], vec![[[[0.0; BLOCK]; 3]; 3]; 3]);
-                skin_blocks_at(level, &palette, influences, &rest[..count], &mut out, &mut linear);
+                skin_at(level, &palette, influences, &rest[..count], &mut out, &mut linear);
                 let (mut each, mut maps) = (out.clone(), linear.clone());
                 skin_each(&palette, influences, &rest[..count], &mut each, &mut maps);
                 let lanes = |maps: &[LinearBlock], i: usize| map_of(&maps[i / BLOCK], i % BLOCK);

@@ -9,10 +9,11 @@
 
 use super::blend::{BLOCK, Influences, LinearBlock, Rows, dominant_map};
 use super::cofactor::{Cofactors, Linear};
+use super::copy::copy;
 use super::skin::{map_of, vector_of};
 use super::tiny::LEAST;
-use crate::dispatch;
-use crate::lanes::block::{read, write};
+use crate::dispatch::{self, Level};
+use crate::lanes::block::{filled, read, write};
 use crate::lanes::{VECTORS, three};
 use crate::math::float::{abs, sqrt};
 use crate::math::vec3::dot;
@@ -62,10 +63,33 @@ pub fn unskin(
     tissue: Tissue<'_>,
     out: &mut [[f32; 3]],
 ) {
-    if VECTORS {
-        unskin_blocks_at(dispatch::widest(), palette, influences, linear, y, tissue, out);
-    } else {
-        unskin_each(palette, influences, linear, y, tissue, out);
+    unskin_at(dispatch::widest(), palette, influences, linear, y, tissue, out);
+}
+
+/// [`unskin`] on some registers.
+fn unskin_at(
+    level: Level,
+    palette: &[Rows],
+    influences: Influences<'_>,
+    linear: &[LinearBlock],
+    y: &[[f32; 3]],
+    tissue: Tissue<'_>,
+    out: &mut [[f32; 3]],
+) {
+    if !VECTORS {
+        return unskin_each(palette, influences, linear, y, tissue, out);
+    }
+    unskin_blocks_at(level, palette, influences, linear, y, tissue, out);
+    let n = [out.len(), tissue.softness.len(), tissue.region.len(), linear.len() * BLOCK];
+    let n = n.into_iter().fold(y.len(), usize::min);
+    let whole = n / BLOCK * BLOCK;
+    if whole < n {
+        let mut last = [[0.0; 3]; BLOCK];
+        let (softness, region) = (filled(&tissue.softness[whole..n]), filled(&tissue.region[whole..n]));
+        let tissue = Tissue { softness: &softness, region: &region, ..tissue };
+        let (influences, linear) = (influences.after(whole), &linear[whole / BLOCK..]);
+        unskin_blocks_at(level, palette, influences, linear, &filled(&y[whole..n]), tissue, &mut last);
+        copy(&last, &mut out[whole..n]);
     }
 }
 
@@ -96,7 +120,7 @@ dispatch::copies!(unskin_blocks_at, unskin_blocks, (
     out: &mut [[f32; 3]],
 ));
 
-/// [`unskin`] by blocks.
+/// [`unskin`] of whole blocks.
 #[inline(always)]
 fn unskin_blocks(
     palette: &[Rows],
@@ -106,16 +130,15 @@ fn unskin_blocks(
     tissue: Tissue<'_>,
     out: &mut [[f32; 3]],
 ) {
-    let (mut soft, mut inverse_square) = ([0.0; BLOCK], [0.0; BLOCK]);
-    let (mut v, mut regular) = ([[0.0; BLOCK]; 3], [true; BLOCK]);
-    let points = y.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).zip(linear);
-    let tissues = tissue.softness.chunks(BLOCK).zip(tissue.region.chunks(BLOCK));
+    let points = y.as_chunks().0.iter().zip(out.as_chunks_mut().0).zip(linear);
+    let tissues = tissue.softness.as_chunks::<BLOCK>().0.iter().zip(tissue.region.as_chunks::<BLOCK>().0);
     for (start, (((y, out), linear), (softness, region))) in (0..).step_by(BLOCK).zip(points.zip(tissues)) {
-        for (lane, (softness, region)) in (0..BLOCK).zip(softness.iter().zip(region)) {
-            let limit = tissue.limit(*region);
-            (soft[lane], inverse_square[lane]) = (softness * limit.gain, limit.inverse_square);
+        let (mut soft, mut inverse_square) = ([0.0; BLOCK], [0.0; BLOCK]);
+        for lane in 0..BLOCK {
+            let limit = tissue.limit(region[lane]);
+            (soft[lane], inverse_square[lane]) = (softness[lane] * limit.gain, limit.inverse_square);
         }
-        read(y, &mut v);
+        let (mut v, mut regular) = (read(y), [true; BLOCK]);
         for lane in 0..BLOCK {
             let (m, y) = (map_of(linear, lane), vector_of(&v, lane));
             let (shown, fine) = show(&m, y, soft[lane], inverse_square[lane]);
@@ -179,7 +202,7 @@ mod tests {
         let tissue = Tissue { softness: &softness, region: &region, limits: &LIMITS };
         let one = |level| {
             let mut out = std::vec![[f32::NAN; 3]; usize::from(n)];
-            unskin_blocks_at(level, &[identity], influences, &linear, &y, tissue, &mut out);
+            unskin_at(level, &[identity], influences, &linear, &y, tissue, &mut out);
             out
         };
         let mut each = std::vec![[f32::NAN; 3]; usize::from(n)];

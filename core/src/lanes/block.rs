@@ -3,11 +3,10 @@
 //! A loop over all lanes of a block, on arrays of its own, is what a compiler turns into vector instructions of any
 //! width without a remainder. Lanes past the last point hold numbers that nobody reads.
 
-use super::each;
 use wide::f32x4;
 
 /// Points of a block.
-pub const BLOCK: usize = 32;
+pub const BLOCK: usize = if cfg!(target_arch = "wasm32") { 4 } else { 32 };
 
 /// A vector of each point of a block: three components, a lane a point.
 pub type Vectors = [[f32; BLOCK]; 3];
@@ -20,57 +19,55 @@ pub(crate) fn put([x, y, z]: &mut Vectors, group: usize, v: [f32x4; 3]) {
     z.as_chunks_mut().0[group] = v[2].to_array();
 }
 
-/// Takes the first points of `points`, up to a block, into `lanes`.
+/// Takes the points of a block into lanes.
 #[inline(always)]
-pub(crate) fn read(points: &[[f32; 3]], lanes: &mut Vectors) {
-    if let Some(points) = points.first_chunk::<BLOCK>() {
-        for (group, points) in (0..BLOCK / 4).zip(points.as_chunks::<4>().0) {
-            let rows = each(|k| f32x4::from([points[k][0], points[k][1], points[k][2], 0.0]));
-            let [x, y, z, _] = f32x4::transpose(rows);
-            put(lanes, group, [x, y, z]);
-        }
-    } else {
-        let [x, y, z] = lanes;
-        for (lane, point) in (0..BLOCK).zip(points) {
-            [x[lane], y[lane], z[lane]] = *point;
-        }
+pub(crate) fn read(points: &[[f32; 3]; BLOCK]) -> Vectors {
+    let mut lanes = [[0.0; BLOCK]; 3];
+    let [x, y, z] = &mut lanes;
+    for lane in 0..BLOCK {
+        [x[lane], y[lane], z[lane]] = points[lane];
     }
+    lanes
+}
+
+/// The first elements of `v`, filled up to a block.
+#[inline(always)]
+pub(crate) fn filled<T: Copy + Default>(v: &[T]) -> [T; BLOCK] {
+    let mut block = [T::default(); BLOCK];
+    let n = v.len().min(BLOCK);
+    block[..n].copy_from_slice(&v[..n]);
+    block
+}
+
+/// What of `v` follows its first `n`.
+#[inline(always)]
+pub(crate) fn after<T>(v: &[T], n: usize) -> &[T] {
+    v.get(n..).unwrap_or_default()
 }
 
 /// Puts the lanes back.
 #[inline(always)]
-pub(crate) fn write([x, y, z]: &Vectors, points: &mut [[f32; 3]]) {
-    if let Some(points) = points.first_chunk_mut::<BLOCK>() {
-        for (group, points) in (0..BLOCK / 4).zip(points.as_chunks_mut::<4>().0) {
-            let of = |v: &[f32; BLOCK]| f32x4::from(v.as_chunks::<4>().0[group]);
-            let rows = f32x4::transpose([of(x), of(y), of(z), f32x4::ZERO]);
-            let [a, b, c, d] = each(|k| rows[k].to_array());
-            *points = [[a[0], a[1], a[2]], [b[0], b[1], b[2]], [c[0], c[1], c[2]], [d[0], d[1], d[2]]];
-        }
-    } else {
-        for (lane, point) in (0..BLOCK).zip(points) {
-            *point = [x[lane], y[lane], z[lane]];
-        }
+pub(crate) fn write([x, y, z]: &Vectors, points: &mut [[f32; 3]; BLOCK]) {
+    for lane in 0..BLOCK {
+        points[lane] = [x[lane], y[lane], z[lane]];
     }
 }
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::*;
-    use std::vec::Vec;
 
     #[test]
     fn what_is_read_is_written_again() {
-        for n in 0..33_u8 {
-            let points: Vec<[f32; 3]> =
-                (0..n).map(|i| [0.0, 100.0, 200.0].map(|k| k + f32::from(i))).collect();
-            let (mut lanes, mut out) = ([[9.0; BLOCK]; 3], points.clone());
-            read(&points, &mut lanes);
-            assert!(lanes[2][usize::from(n)..].iter().all(|x| *x == 9.0), "{n}");
-            out.fill([0.0; 3]);
-            write(&lanes, &mut out);
-            assert_eq!(out, points);
+        let mut points = [[0.0; 3]; BLOCK];
+        (0_u8..).zip(&mut points).for_each(|(i, p)| *p = [0.0, 100.0, 200.0].map(|k| k + f32::from(i)));
+        let lanes = read(&points);
+        for (lane, point) in points.iter().enumerate() {
+            assert_eq!(&[lanes[0][lane], lanes[1][lane], lanes[2][lane]], point);
         }
+        let mut out = [[9.0; 3]; BLOCK];
+        write(&lanes, &mut out);
+        assert_eq!(out, points);
+        assert_eq!(filled(&points[..3])[..4], [points[0], points[1], points[2], [0.0; 3]]);
     }
 }

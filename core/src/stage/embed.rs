@@ -1,5 +1,6 @@
 //! Offsets in, vertex buffers out: bind-space positions and normals of the render vertices.
 
+use crate::kernel::copy::copy;
 use crate::kernel::normal::{self, Stencils};
 use crate::math::vec3;
 
@@ -23,7 +24,7 @@ pub fn rest(surface: Surface<'_>, positions: &mut [[f32; 3]], normals: &mut [[f3
     for (position, point) in positions.iter_mut().zip(surface.point_of_vertex) {
         *position = surface.rest.get(*point as usize).copied().unwrap_or(*position);
     }
-    normals.iter_mut().zip(surface.normals).for_each(|(normal, rest)| *normal = *rest);
+    copy(surface.normals, normals);
 }
 
 /// Writes the positions and normals that `offsets` (bind space, one a moving point) change.

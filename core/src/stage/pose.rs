@@ -1,6 +1,7 @@
 //! Pose in, palette out; and what the root did since the last step.
 
 use crate::kernel::clip::{Channels, Property};
+use crate::kernel::copy::copy;
 use crate::kernel::skin::Rows;
 use crate::kernel::tiny::{LEAST, flush_all, flush_map};
 use crate::math::affine::{self, Affine};
@@ -108,7 +109,7 @@ pub fn sample(
     out: &mut [Affine],
     (local, model): (&mut [[f32; 10]], &mut [Affine]),
 ) {
-    local.iter_mut().zip(skeleton.rest).for_each(|(local, rest)| *local = *rest);
+    copy(skeleton.rest, local);
     for (node, property, keys) in channels.rows.iter().filter_map(|row| channels.channel(row)) {
         let Some(trs) = local.get_mut(node) else { continue };
         match property {

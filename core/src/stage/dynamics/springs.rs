@@ -1,5 +1,6 @@
 //! Springs on the skinned targets: one a point, parameters by region.
 
+use crate::kernel::copy::copy;
 use crate::kernel::spring::{self, Knots, Spring, Step};
 use crate::math::affine::{self, Affine};
 use crate::math::vec3;
@@ -26,11 +27,6 @@ fn rotate(map: &Affine, vectors: &mut [[f32; 3]]) {
     for vector in vectors {
         *vector = affine::rotate(map, *vector);
     }
-}
-
-/// Copies as many vectors as fit.
-fn copy(from: &[[f32; 3]], to: &mut [[f32; 3]]) {
-    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
 }
 
 /// Components of a run of points, none where there are not so many.
