@@ -9,7 +9,7 @@
 
 use super::cofactor::Linear;
 pub use crate::lanes::block::{BLOCK, Vectors};
-use crate::lanes::block::{after, put};
+use crate::lanes::block::{GROUPS, after, put};
 use crate::lanes::{each, three};
 use crate::math::quat;
 use wide::f32x4;
@@ -81,7 +81,7 @@ pub(crate) fn blend_block(
     point: impl Fn(usize) -> usize,
     [a, b, c, t]: [&mut Vectors; 4],
 ) {
-    for group in 0..BLOCK / 4 {
+    for group in 0..GROUPS {
         let maps = blend_four(palette, influences, each(|lane| point(4 * group + lane)));
         let rows = three(|r| f32x4::transpose(each(|lane| maps[lane][r])));
         // Written out: a loop that is not unrolled would keep all of it in memory.

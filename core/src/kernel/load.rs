@@ -9,8 +9,9 @@
 
 use super::skin::{BLOCK, LinearBlock, map_of};
 use crate::dispatch;
-use crate::lanes::block::write;
-use crate::math::{affine, vec3};
+use crate::lanes::block::{GROUPS, four, put, write};
+use crate::lanes::{Number, three};
+use wide::f32x4;
 
 /// Accelerations of points, model units per s².
 ///
@@ -27,23 +28,25 @@ dispatch::copies!(load_at, load_any, (
 /// The body of each copy of [`load`].
 #[inline(always)]
 fn load_any(gravity: [f32; 3], authored: [f32; 3], linear: &[LinearBlock], out: &mut [[f32; 3]]) {
-    let of = |linear: &LinearBlock, lane| {
-        let [a, b, c] = map_of(linear, lane);
-        vec3::sub(gravity, affine::rotate(&[a, b, c, [0.0; 3]], authored))
-    };
     let (blocks, rest) = out.as_chunks_mut();
     let last = linear.get(blocks.len());
     for (linear, out) in linear.iter().zip(blocks) {
         let mut f = [[0.0; BLOCK]; 3];
-        let [x, y, z] = &mut f;
-        for lane in 0..BLOCK {
-            [x[lane], y[lane], z[lane]] = of(linear, lane);
+        for group in 0..GROUPS {
+            let b = three(|c| four(&linear[c], group));
+            put(&mut f, group, felt(gravity.map(f32x4::splat), authored.map(f32x4::splat), b));
         }
         write(&f, out);
     }
     if let Some(linear) = last {
-        (0..).zip(rest).for_each(|(lane, out)| *out = of(linear, lane));
+        (0..).zip(rest).for_each(|(lane, out)| *out = felt(gravity, authored, map_of(linear, lane)));
     }
+}
+
+/// `g − B·g₀`.
+#[inline(always)]
+fn felt<T: Number>(gravity: [T; 3], authored: [T; 3], [a, b, c]: [[T; 3]; 3]) -> [T; 3] {
+    three(|r| gravity[r] - (a[r] * authored[0] + b[r] * authored[1] + c[r] * authored[2]))
 }
 
 #[cfg(test)]
@@ -56,9 +59,9 @@ mod tests {
         let turn = [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
         let linear = turn.map(|column| column.map(|x| [x; BLOCK]));
         for level in dispatch::levels() {
-            let mut out = [[9.0; 3]; 5];
-            load_at(level, [0.0, -10.0, 0.0], [0.0, -10.0, 1.0], &[linear], &mut out);
-            assert_eq!(out, [[0.0, -20.0, -1.0]; 5], "{level:?}");
+            let mut out = [[9.0; 3]; BLOCK + 5];
+            load_at(level, [0.0, -10.0, 0.0], [0.0, -10.0, 1.0], &[linear; 2], &mut out);
+            assert_eq!(out, [[0.0, -20.0, -1.0]; BLOCK + 5], "{level:?}");
         }
     }
 }

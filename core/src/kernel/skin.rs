@@ -11,8 +11,8 @@ use super::blend::{blend, blend_block, dominant_map, linear_of};
 use super::cofactor::{Cofactors, Linear};
 use super::copy::copy;
 use crate::dispatch::{self, Level};
-use crate::lanes::block::{filled, read, write};
-use crate::lanes::{VECTORS, three};
+use crate::lanes::block::{GROUPS, filled, four, put, read, write};
+use crate::lanes::{Number, VECTORS, three};
 use crate::math::float::{max, sqrt};
 use crate::math::vec3;
 
@@ -30,7 +30,7 @@ pub(crate) fn map_of(columns: &LinearBlock, lane: usize) -> Linear {
 
 /// `M·p + t`.
 #[inline(always)]
-fn apply([a, b, c]: &Linear, t: [f32; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
+fn apply<T: Number>([a, b, c]: &[[T; 3]; 3], t: [T; 3], [x, y, z]: [T; 3]) -> [T; 3] {
     three(|r| (a[r] * x + b[r] * y) + (c[r] * z + t[r]))
 }
 
@@ -111,9 +111,11 @@ fn skin_blocks(
         let (mut t, [a, b, c]) = ([[0.0; BLOCK]; 3], &mut *linear);
         blend_block(palette, &influences, |lane| start + lane, [a, b, c, &mut t]);
         let mut p = read(rest);
-        for lane in 0..BLOCK {
-            let moved = apply(&map_of(linear, lane), vector_of(&t, lane), vector_of(&p, lane));
-            (p[0][lane], p[1][lane], p[2][lane]) = moved.into();
+        // Four points in a register each: of one loop over all lanes no vector instructions come in WebAssembly.
+        for group in 0..GROUPS {
+            let m = three(|c| four(&linear[c], group));
+            let moved = apply(&m, four(&t, group), four(&p, group));
+            put(&mut p, group, moved);
         }
         write(&p, out);
     }

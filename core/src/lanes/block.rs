@@ -3,6 +3,7 @@
 //! A loop over all lanes of a block, on arrays of its own, is what a compiler turns into vector instructions of any
 //! width without a remainder. Lanes past the last point hold numbers that nobody reads.
 
+use super::three;
 use wide::f32x4;
 
 /// Points of a block.
@@ -10,6 +11,15 @@ pub const BLOCK: usize = if cfg!(target_arch = "wasm32") { 4 } else { 32 };
 
 /// A vector of each point of a block: three components, a lane a point.
 pub type Vectors = [[f32; BLOCK]; 3];
+
+/// Registers of four lanes in a block.
+pub(crate) const GROUPS: usize = BLOCK / 4;
+
+/// Vectors of four points.
+#[inline(always)]
+pub(crate) fn four(v: &Vectors, group: usize) -> [f32x4; 3] {
+    three(|r| f32x4::from(v[r].as_chunks().0[group]))
+}
 
 /// Puts the vectors of four points in their lanes.
 #[inline(always)]
