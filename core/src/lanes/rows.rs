@@ -12,7 +12,7 @@ pub(crate) fn rows_plain(weights: &[i8], q: &[i8], each: impl FnMut(usize, i32))
     if VECTORS {
         rows_by(weights, q, four_wide, each);
     } else {
-        rows_by(weights, q, |rows, q| rows.map(|w| dot(w, q)), each);
+        rows_by(weights, q, |[a, b, c, d], q| [dot(a, q), dot(b, q), dot(c, q), dot(d, q)], each);
     }
 }
 
