@@ -7,6 +7,8 @@
 //! ```
 
 pub mod builtin;
+#[cfg(feature = "simulate")]
+pub mod dataset;
 pub mod error;
 pub mod export;
 #[cfg(feature = "render")]
@@ -16,6 +18,8 @@ pub mod import;
 pub mod model;
 pub mod pack;
 pub mod play;
+#[cfg(feature = "simulate")]
+pub mod pose;
 pub mod recipe;
 #[cfg(feature = "render")]
 pub mod render;

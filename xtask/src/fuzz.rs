@@ -8,7 +8,7 @@ use crate::report::Step;
 use crate::{nightly, process, report, workspace};
 
 /// The targets of `tests/fuzz`.
-const TARGETS: [&str; 6] = ["asset", "replay", "gltf", "recipe", "tunables", "setters"];
+const TARGETS: [&str; 8] = ["asset", "replay", "gltf", "recipe", "tunables", "bvh", "dataset", "setters"];
 
 /// Tries each target for `seconds` s; `only` names one of them.
 ///

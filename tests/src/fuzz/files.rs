@@ -7,9 +7,12 @@ use crate::tube;
 use sinew::asset::layout::HEADER_LEN;
 use sinew::replay::{Extent, Replay, Verdict, verify};
 use sinew::{Asset, Character, Pose, Root};
+use sinew_bake::dataset::Reader;
+use sinew_bake::pose::bvh::Bvh;
 use sinew_bake::recipe::{Recipe, flesh};
 use sinew_bake::tunables::TunablesFile;
 use sinew_bake::{Error, Model, import, pack};
+use std::io::Cursor;
 
 /// Most memory, in floats, of a character that is tried: larger ones are right, but slow to try.
 const MOST_MEMORY: usize = 1 << 22;
@@ -142,4 +145,45 @@ pub(super) fn tunables(bytes: &[u8]) {
             assert_state_returns(c);
         }
     });
+}
+
+/// A recording: what is read is finite, and its joints are a tree.
+pub(super) fn bvh(bytes: &[u8]) {
+    let Ok(bvh) = Bvh::from_bytes("fuzz", bytes) else { return };
+    assert!(bvh.joints.iter().enumerate().all(|(i, j)| j.parent.is_none_or(|p| p < i)), "parents come first");
+    assert!(bvh.frame_time.is_finite() && bvh.frame_time > 0.0, "a time between frames");
+    for frame in
+        [0, bvh.frames() / 2, bvh.frames().saturating_sub(1)].into_iter().filter(|f| *f < bvh.frames())
+    {
+        let placed = bvh.placed(frame);
+        assert!(placed.iter().all(|p| p.rotation.is_finite() && p.translation.is_finite()), "finite places");
+    }
+    let _ = bvh.first_frame();
+}
+
+/// Bytes as they are, then with the digest of the head made to fit.
+pub(super) fn dataset(bytes: &[u8]) {
+    walk(bytes);
+    let Some(json) = bytes.get(12..16).map(|n| u32::from_le_bytes([n[0], n[1], n[2], n[3]]) as usize) else {
+        return;
+    };
+    let mut bytes = bytes.to_vec();
+    if json < bytes.len() && bytes.len() >= 16 + json + 8 {
+        let digest = sinew::math::digest::of_bytes(&bytes[..16 + json]);
+        bytes[16 + json..24 + json].copy_from_slice(&digest.to_le_bytes());
+        walk(&bytes);
+    }
+}
+
+/// Every sample that is promised is there or refused.
+fn walk(bytes: &[u8]) {
+    let Ok(mut reader) = Reader::over(vec![("fuzz".into(), Cursor::new(bytes))]) else { return };
+    let indices: Vec<u64> = reader.indices().collect();
+    let arrays = reader.header().arrays.len();
+    for index in indices {
+        if let Ok(sample) = reader.sample(index) {
+            assert!(sample.index == index && sample.arrays.len() == arrays, "as the header says");
+        }
+    }
+    let _ = reader.missing();
 }

@@ -29,12 +29,14 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 8] = [
     Target { name: "asset", run: files::asset, seeds: seeds::assets },
     Target { name: "replay", run: files::replay, seeds: seeds::replays },
     Target { name: "gltf", run: files::gltf, seeds: seeds::gltfs },
     Target { name: "recipe", run: files::recipe, seeds: seeds::recipes },
     Target { name: "tunables", run: files::tunables, seeds: seeds::tunables },
+    Target { name: "bvh", run: files::bvh, seeds: seeds::bvhs },
+    Target { name: "dataset", run: files::dataset, seeds: seeds::datasets },
     Target { name: "setters", run: running::setters, seeds: seeds::scripts },
 ];
 

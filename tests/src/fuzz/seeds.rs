@@ -7,6 +7,7 @@ use crate::tube;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use sinew_bake::builtin;
+use sinew_bake::dataset::{Array, ArrayInfo, Header, Shard, Writer};
 use sinew_bake::export::glb::to_glb;
 use sinew_bake::model::{Channel, Interpolation, Model, Property};
 use sinew_bake::recipe::{Recipe, flesh};
@@ -90,4 +91,35 @@ pub(super) fn scripts() -> Seeds {
         .flat_map(|i| [10 + i % 6, i, 1, 3, i, 0, 2, i, 0, 1, i, 0, 1, 1, i, 0, 0, 200, 0])
         .collect();
     vec![("each", each), ("steps", steps)]
+}
+
+pub(super) fn bvhs() -> Seeds {
+    let walk = "HIERARCHY\nROOT hip\n{\n OFFSET 0 1 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n JOINT leg\n {\n  OFFSET 0 -0.5 0\n  CHANNELS 3 Zrotation Xrotation Yrotation\n  End Site\n  {\n   OFFSET 0 -0.5 0\n  }\n }\n}\nMOTION\nFrames: 2\nFrame Time: 0.01\n0 1 0 0 0 0 0 0 0\n0 1 0.1 5 -3 1e1 30 0 -2\n";
+    vec![("walk", walk.into())]
+}
+
+pub(super) fn datasets() -> Seeds {
+    let header = Header {
+        seed: 1,
+        samples: 3,
+        shard: Shard::WHOLE,
+        character: "0f".to_owned(),
+        setting: serde_json::json!({ "cage": "none" }),
+        arrays: vec![ArrayInfo::new("skin", &[2, 3], "m"), ArrayInfo::new("motion", &[0, 2], "1")],
+    };
+    let path = std::env::temp_dir().join(format!(
+        "sinew-seed-{}-{:?}",
+        std::process::id(),
+        std::thread::current().id()
+    ));
+    let mut writer = Writer::open(&path, &header).expect("a file");
+    for (index, frames) in [(0, 1), (2, 3)] {
+        let motion = vec![0.5; 2 * frames];
+        let arrays = [Array { name: "skin", values: &[0.25; 6] }, Array { name: "motion", values: &motion }];
+        writer.append(index, &arrays).expect("room");
+    }
+    drop(writer);
+    let bytes = std::fs::read(&path).expect("what was written");
+    std::fs::remove_file(&path).expect("what was written");
+    vec![("two-of-three", bytes)]
 }
