@@ -8,9 +8,13 @@
 
 pub mod builtin;
 #[cfg(feature = "simulate")]
+pub mod cage;
+#[cfg(feature = "simulate")]
 pub mod dataset;
 pub mod error;
 pub mod export;
+#[cfg(feature = "simulate")]
+pub mod fem;
 #[cfg(feature = "render")]
 pub mod film;
 pub mod fit;

@@ -9,14 +9,14 @@ const FAR: f64 = 1e15;
 
 /// Points sorted into cubes of a given edge.
 #[derive(Debug)]
-pub(super) struct Grid {
+pub(crate) struct Grid {
     edge: f64,
     cubes: BTreeMap<[i64; 3], Vec<usize>>,
 }
 
 impl Grid {
     /// Sorts `points` into cubes; `edge` is the largest radius that will be asked for.
-    pub(super) fn new(points: &[DVec3], edge: f64) -> Self {
+    pub(crate) fn new(points: &[DVec3], edge: f64) -> Self {
         let mut grid = Self { edge, cubes: BTreeMap::new() };
         for (i, p) in points.iter().enumerate() {
             let cube = grid.cube(*p);
@@ -26,7 +26,7 @@ impl Grid {
     }
 
     /// Indices of the points in the 27 cubes around `p`: all those within `edge`, and some beyond.
-    pub(super) fn around(&self, p: DVec3) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn around(&self, p: DVec3) -> impl Iterator<Item = usize> + '_ {
         let [x, y, z] = self.cube(p);
         let columns = (-1..=1).flat_map(move |dx| (-1..=1).map(move |dy| [x + dx, y + dy]));
         columns.flat_map(move |[x, y]| {

@@ -12,16 +12,18 @@
 #![doc = include_str!("../../../docs/recipe.md")]
 
 mod anatomy;
+#[cfg(feature = "simulate")]
+pub(crate) mod bone;
 mod field;
 mod flap;
-mod grid;
+pub(crate) mod grid;
 mod mirror;
 mod protrusion;
 mod region;
 mod rules;
 mod skeleton;
 mod smooth;
-mod surface;
+pub(crate) mod surface;
 
 use serde::{Deserialize, Serialize};
 

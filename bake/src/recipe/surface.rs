@@ -14,36 +14,36 @@ const BRIDGE: f64 = 0.015;
 
 /// A welded surface; lengths in body sizes, areas in body sizes squared.
 #[derive(Debug)]
-pub(super) struct Surface {
+pub(crate) struct Surface {
     /// Body size in model units: diagonal of the box around all triangles.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// Where that box has its smallest coordinates, model units.
-    pub(super) corner: DVec3,
+    pub(crate) corner: DVec3,
     /// Point of each render vertex.
-    pub(super) point_of: Vec<usize>,
+    pub(crate) point_of: Vec<usize>,
     /// Rest positions; the box's corner with the smallest coordinates is the origin.
-    pub(super) points: Vec<DVec3>,
+    pub(crate) points: Vec<DVec3>,
     /// Position in bind space of the first render vertex of each point, model units.
-    pub(super) bind: Vec<DVec3>,
+    pub(crate) bind: Vec<DVec3>,
     /// Nodes that move a point, ascending, with weights that sum to 1.
-    pub(super) weights: Vec<Vec<(usize, f64)>>,
+    pub(crate) weights: Vec<Vec<(usize, f64)>>,
     /// A third of the area of the triangles around a point.
-    pub(super) area: Vec<f64>,
+    pub(crate) area: Vec<f64>,
     /// A third of the area vectors (area times normal) of the triangles around a point.
-    pub(super) vector: Vec<DVec3>,
+    pub(crate) vector: Vec<DVec3>,
     /// Neighbors along triangle edges, ascending, with lengths.
-    pub(super) edges: Vec<Vec<(usize, f64)>>,
+    pub(crate) edges: Vec<Vec<(usize, f64)>>,
     /// `edges`, and bridges between shells that touch.
-    pub(super) links: Vec<Vec<(usize, f64)>>,
+    pub(crate) links: Vec<Vec<(usize, f64)>>,
     /// Shell (connected component of `edges`) of each point.
-    pub(super) shell: Vec<usize>,
+    pub(crate) shell: Vec<usize>,
     /// Number of shells.
-    pub(super) shells: usize,
+    pub(crate) shells: usize,
 }
 
 impl Surface {
     /// Welds all skinned primitives of a model.
-    pub(super) fn new(model: &Model) -> Result<Self, Error> {
+    pub(crate) fn new(model: &Model) -> Result<Self, Error> {
         let rest = model.rest_positions();
         if let Some(vertex) = rest.iter().position(|p| !p.is_finite()) {
             return Err(Error::unusable(
@@ -153,7 +153,7 @@ fn bind_positions(model: &Model) -> Vec<DVec3> {
     positions.map(|p| DVec3::from_array(p.map(f64::from))).collect()
 }
 
-fn triangles(model: &Model, point_of: &[usize]) -> Vec<[usize; 3]> {
+pub(crate) fn triangles(model: &Model, point_of: &[usize]) -> Vec<[usize; 3]> {
     let mut start = 0;
     let mut out = Vec::new();
     for primitive in &model.primitives {
@@ -211,7 +211,7 @@ fn edges(points: &[DVec3], triangles: &[[usize; 3]]) -> Vec<Vec<(usize, f64)>> {
 }
 
 /// Connected components: the number of each point's, in order of their first points; and how many.
-pub(super) fn shells(edges: &[Vec<(usize, f64)>]) -> (Vec<usize>, usize) {
+pub(crate) fn shells(edges: &[Vec<(usize, f64)>]) -> (Vec<usize>, usize) {
     let mut shell = vec![usize::MAX; edges.len()];
     let mut count = 0;
     for start in 0..edges.len() {
