@@ -58,7 +58,12 @@ impl Survey {
         let columns = columns.clamp(1, span);
         let moment = |k: u32| u64::from(k) * u64::from(span) / u64::from(columns);
         let first = if steady { player.frames - span } else { 0 };
-        let wanted = (0..columns).map(|k| first + u32::try_from(moment(k)).unwrap_or(span)).collect();
+        Self::of(model, (0..columns).map(|k| first + u32::try_from(moment(k)).unwrap_or(span)).collect())
+    }
+
+    /// Prepares for frames from anywhere; those with a number in `wanted`, ascending, are kept.
+    #[must_use]
+    pub fn of(model: &Model, wanted: Vec<u32>) -> Self {
         Self {
             framings: ASPECTS.map(|a| (a, Framing::new(a, front(model) + VIEW.0, VIEW.1))),
             wanted,
@@ -202,9 +207,44 @@ impl<'a> Film<'a> {
         }
     }
 
+    /// Writes a looping GIF of frames from anywhere, `fps` a second.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`GifWriter`].
+    pub fn gif_of<W: Write>(
+        &self,
+        out: W,
+        frames: &[Frame],
+        fps: f32,
+        looks: &[(&str, Look)],
+        mut drawn: impl FnMut(),
+    ) -> io::Result<W> {
+        let mut gif = GifWriter::new(out, &self.draw_all(self.moments(), looks), fps)?;
+        for batch in frames.chunks(BATCH) {
+            for picture in self.draw_all(batch, looks) {
+                gif.push(&picture)?;
+                drawn();
+            }
+        }
+        gif.finish()
+    }
+
     /// The contact sheet: one row a look, one column a moment. `drawn` is called after each row.
     #[must_use]
-    pub fn sheet(&self, note: &str, looks: &[(&str, Look)], mut drawn: impl FnMut()) -> RgbImage {
+    pub fn sheet(&self, note: &str, looks: &[(&str, Look)], drawn: impl FnMut()) -> RgbImage {
+        self.sheet_of(note, looks, |f| format!("{:.2} s", f.time), drawn)
+    }
+
+    /// [`Self::sheet`] with a `caption` over each moment.
+    #[must_use]
+    pub fn sheet_of(
+        &self,
+        note: &str,
+        looks: &[(&str, Look)],
+        caption: impl Fn(&Frame) -> String,
+        mut drawn: impl FnMut(),
+    ) -> RgbImage {
         let row = |(name, look): &(&str, Look)| {
             let cells = self.draw_all(self.moments(), &[("", *look)]);
             drawn();
@@ -215,7 +255,7 @@ impl<'a> Film<'a> {
         render::contact_sheet(&Sheet {
             title: self.model.name.clone(),
             note: note.to_owned(),
-            columns: self.moments().iter().map(|f| format!("{:.2} s", f.time)).collect(),
+            columns: self.moments().iter().map(caption).collect(),
             rows,
             legend: heat.then(|| Legend {
                 caption: "distance from skinning, % of the body".to_owned(),

@@ -29,6 +29,8 @@ pub mod recipe;
 pub mod render;
 #[cfg(feature = "render")]
 pub mod report;
+#[cfg(feature = "simulate")]
+pub mod simulate;
 pub mod tunables;
 
 pub use error::Error;

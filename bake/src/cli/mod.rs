@@ -2,11 +2,13 @@
 
 mod bake;
 mod bench;
+mod cage;
 mod inspect;
 mod load;
 mod pictures;
 mod play;
 mod progress;
+mod simulate;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -37,9 +39,16 @@ enum Command {
     Verify(verify::Arguments),
     /// Measure the runtime on this machine, with peers in the same run
     Bench {
-        /// springs, skin or character-frame; all without it
+        /// Name of a benchmark, such as springs or fem-prisms; all without it
         name: Option<String>,
+        /// A character for those of finite elements; the built-in one without it
+        #[arg(long)]
+        input: Option<PathBuf>,
     },
+    /// Put tetrahedra around a character for simulation
+    Cage(cage::Arguments),
+    /// Make a dataset of a character's flesh in equilibrium or in motion
+    Simulate(simulate::Arguments),
     /// Say what is in a .glb, .vrm, .sinew or .replay
     Inspect {
         /// The file
@@ -61,7 +70,9 @@ pub(super) fn main() -> ExitCode {
         Command::Bake(a) => bake::run(a),
         Command::Play(a) => play::run(a),
         Command::Verify(a) => verify::run(a),
-        Command::Bench { name } => bench::run(name.as_deref()),
+        Command::Bench { name, input } => bench::run(name.as_deref(), input.as_deref()),
+        Command::Cage(a) => cage::run(a),
+        Command::Simulate(a) => simulate::run(a),
         Command::Inspect { file } => inspect::run(file),
     };
     let (json, lines, code) = match outcome {

@@ -88,6 +88,13 @@ impl Builder {
         self.accessor(view, UNSIGNED_INT, "SCALAR", x.len() * 3)
     }
 
+    /// Edges of a drawing.
+    #[cfg(feature = "simulate")]
+    pub(super) fn lines(&mut self, x: &[[u32; 2]]) -> usize {
+        let view = self.view(bytemuck::cast_slice(x.as_flattened()), Some(INDICES));
+        self.accessor(view, UNSIGNED_INT, "SCALAR", x.len() * 2)
+    }
+
     fn joints(&mut self, x: &[[u16; 4]]) -> usize {
         let view = self.view(bytemuck::cast_slice(x.as_flattened()), Some(VERTICES));
         self.accessor(view, UNSIGNED_SHORT, "VEC4", x.len())

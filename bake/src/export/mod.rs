@@ -1,5 +1,7 @@
 //! Files out: characters, animated meshes and arrays, written whole or not at all.
 
+#[cfg(feature = "simulate")]
+pub mod cage;
 pub mod glb;
 pub mod morph;
 pub mod npy;

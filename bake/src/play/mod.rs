@@ -2,7 +2,7 @@
 
 mod shake;
 
-use crate::model::{Model, Property};
+use crate::model::{Model, Node, Property};
 use crate::{Error, pack};
 use glam::{DMat4, DQuat, DVec3};
 use sinew::kernel::clip::Channels;
@@ -356,6 +356,12 @@ fn is_looped(model: &Model, index: usize, body_size: f64) -> bool {
 
 /// Transforms of all nodes at time `t` of a clip, model from node.
 fn transforms(model: &Model, clip: Option<&crate::model::Clip>, t: f32) -> Vec<DMat4> {
+    let local: Vec<DMat4> = nodes_at(model, clip, t).iter().map(Node::parent_from_node).collect();
+    model.compose(&local)
+}
+
+/// All nodes of a model as a clip has them at time `t`, s.
+pub(crate) fn nodes_at(model: &Model, clip: Option<&crate::model::Clip>, t: f32) -> Vec<Node> {
     let mut nodes = model.nodes.clone();
     for c in clip.iter().flat_map(|c| &c.channels) {
         let interpolation = match c.interpolation {
@@ -374,8 +380,7 @@ fn transforms(model: &Model, clip: Option<&crate::model::Clip>, t: f32) -> Vec<D
             }
         }
     }
-    let local: Vec<DMat4> = nodes.iter().map(crate::model::Node::parent_from_node).collect();
-    model.compose(&local)
+    nodes
 }
 
 /// Transforms of the rigid meshes' nodes.

@@ -13,11 +13,11 @@ use std::fs;
 use std::path::Path;
 
 /// Pixels of a picture of the rest pose.
-const SIZE: [u32; 2] = [360, 420];
+pub(super) const SIZE: [u32; 2] = [360, 420];
 /// Views: name and azimuth from the front, radians.
-const VIEWS: [(&str, f32); 3] = [("front", 0.0), ("side", 0.5 * PI), ("back", PI)];
+pub(super) const VIEWS: [(&str, f32); 3] = [("front", 0.0), ("side", 0.5 * PI), ("back", PI)];
 /// sRGB of the style sheet's colors, for pictures.
-const PALETTE: [[u8; 3]; COLORS] = [
+pub(super) const PALETTE: [[u8; 3]; COLORS] = [
     [0x2f, 0x6f, 0xd0],
     [0xd9, 0x62, 0x2b],
     [0x2b, 0x9a, 0x66],
@@ -203,7 +203,7 @@ fn kind(part: Part) -> usize {
 }
 
 /// A character as it was modelled.
-struct Rest<'a> {
+pub(super) struct Rest<'a> {
     figure: Figure<'a>,
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
@@ -213,7 +213,7 @@ struct Rest<'a> {
 }
 
 impl<'a> Rest<'a> {
-    fn new(model: &'a Model) -> Self {
+    pub(super) fn new(model: &'a Model) -> Self {
         let narrow = |p: DVec3| p.to_array().map(pack::narrow);
         let positions: Vec<[f32; 3]> = model.rest_positions().into_iter().map(narrow).collect();
         let mut normals = Vec::new();
@@ -234,7 +234,7 @@ impl<'a> Rest<'a> {
         Self { figure: Figure::new(model), positions, normals, rigid, points }
     }
 
-    fn draw(&self, azimuth: f32, show: Show<'_>) -> image::RgbImage {
+    pub(super) fn draw(&self, azimuth: f32, show: Show<'_>) -> image::RgbImage {
         let [width, height] = SIZE;
         #[allow(clippy::cast_precision_loss, reason = "pixels")]
         let camera =
@@ -245,7 +245,7 @@ impl<'a> Rest<'a> {
 }
 
 /// A number with its thousands apart.
-fn grouped(n: u64) -> String {
+pub(super) fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();
     for (i, c) in digits.chars().enumerate() {

@@ -2,9 +2,11 @@
 
 #![cfg(not(target_family = "wasm"))]
 
+mod cage;
 mod commands;
 mod disk;
 mod pictures;
 mod refused;
 mod report;
+mod simulate;
 mod support;

@@ -1,20 +1,34 @@
 //! `sinew bench`: speed, as the least time of many rounds, with a plain loop as the peer in the same run.
 
 mod character;
+mod fem;
 mod mlp;
 mod springs;
 
-use super::Outcome;
+use super::{Outcome, load};
 use serde_json::{Value, json};
 use sinew_bake::Error;
+use std::path::Path;
 use std::time::Instant;
 
 /// Rounds; the best counts, because machines are shared.
 const ROUNDS: u32 = 60;
 /// Names that can be asked for.
-const NAMES: [&str; 6] = ["springs", "skin", "character-frame", "batch", "mlp-small", "mlp-int8"];
+const NAMES: [&str; 11] = [
+    "springs",
+    "skin",
+    "character-frame",
+    "batch",
+    "mlp-small",
+    "mlp-int8",
+    "fem-quasistatic",
+    "fem-dynamic",
+    "fem-assembly",
+    "fem-linear",
+    "fem-prisms",
+];
 
-pub(super) fn run(name: Option<&str>) -> Result<Outcome, Error> {
+pub(super) fn run(name: Option<&str>, input: Option<&Path>) -> Result<Outcome, Error> {
     if let Some(name) = name.filter(|n| !NAMES.contains(n)) {
         let problem = format!("there is no benchmark `{name}`");
         return Err(Error::unusable(
@@ -40,6 +54,13 @@ pub(super) fn run(name: Option<&str>) -> Result<Outcome, Error> {
     }
     if wanted("mlp-int8") {
         results.push(mlp::large());
+    }
+    if NAMES[6..10].iter().any(|n| wanted(n)) {
+        let model = load::character(input.unwrap_or_else(|| Path::new("builtin")))?;
+        results.extend(fem::character(&model, &wanted)?);
+    }
+    if wanted("fem-prisms") {
+        results.push(fem::prisms(input)?);
     }
     let lines = results.iter().map(line).collect();
     let json = json!({"machine": machine(), "results": results});
