@@ -20,6 +20,8 @@ pub mod film;
 pub mod fit;
 pub mod import;
 pub mod model;
+#[cfg(feature = "simulate")]
+pub mod multigrid;
 pub mod pack;
 pub mod play;
 #[cfg(feature = "simulate")]

@@ -5,101 +5,79 @@
 //! ```
 //!
 //! On the lattice of a cage this is the 7-point Laplacian. Its matrix is an M-matrix, so that the largest and the
-//! smallest value are fixed ones: values between 0 and 1 stay there. Solved by conjugate gradients with the diagonal as
-//! preconditioner (Hestenes, Stiefel 1952), from the middle of the fixed values.
+//! smallest value are fixed ones: values between 0 and 1 stay there. Solved by the runtime's conjugate gradients with a
+//! multigrid cycle.
 
-/// Sum of squares of the residual, share of the right side's, at which a solution is good.
-const GOOD: f64 = 1e-26;
-/// Most steps, for each node of the graph's diameter and more.
-const STEPS: usize = 10_000;
+use crate::multigrid::{Grids, Matrix, Scratch};
+use sinew::kernel::cg::Until;
+
+/// When a solution is good; far more iterations than a graph takes.
+const GOOD: Until<f64> = Until { share: 1e-14, iterations: 200 };
+/// Not among the free nodes.
+const FIXED: usize = usize::MAX;
 
 /// A graph with free and fixed nodes.
 #[derive(Debug)]
 pub(super) struct Graph {
-    /// Begin of each free node's neighbors in `neighbors`.
-    starts: Vec<usize>,
-    /// Neighbors, as numbers of all nodes.
-    neighbors: Vec<u32>,
-    /// Number of each node among the free ones; `u32::MAX` for others.
-    free_of: Vec<u32>,
+    /// Links from a free node, by its number among the free, to a fixed one.
+    fixed: Vec<(usize, u32)>,
     /// The free nodes, ascending.
     pub(super) free: Vec<u32>,
+    grids: Grids<f64>,
+}
+
+/// What a solution is found in.
+#[derive(Debug)]
+pub(super) struct Work {
+    b: Vec<f64>,
+    x: Vec<f64>,
+    scratch: Scratch<f64>,
 }
 
 impl Graph {
     /// Of `links`; a node that no way leads to from a fixed one must be fixed.
     pub(super) fn new(links: &[[u32; 2]], fixed: &[bool]) -> Self {
-        let mut all = vec![Vec::new(); fixed.len()];
-        for [a, b] in links {
-            all[*a as usize].push(*b);
-            all[*b as usize].push(*a);
+        let free: Vec<u32> = (0..).zip(fixed).filter(|(_, fixed)| !**fixed).map(|(i, _)| i).collect();
+        let mut number = vec![FIXED; fixed.len()];
+        free.iter().enumerate().for_each(|(row, i)| number[*i as usize] = row);
+        let mut rows: Vec<Vec<(usize, f64)>> = (0..free.len()).map(|i| vec![(i, 0.0)]).collect();
+        let mut held = Vec::new();
+        for [a, b] in links.iter().flat_map(|[a, b]| [[*a, *b], [*b, *a]]) {
+            let (row, column) = (number[a as usize], number[b as usize]);
+            if row == FIXED {
+                continue;
+            }
+            rows[row][0].1 += 1.0;
+            if column == FIXED {
+                held.push((row, b));
+            } else {
+                rows[row].push((column, -1.0));
+            }
         }
-        let mut graph = Self {
-            starts: vec![0],
-            neighbors: Vec::new(),
-            free_of: vec![u32::MAX; fixed.len()],
-            free: Vec::new(),
-        };
-        for (i, row) in (0_u32..).zip(all).filter(|(i, _)| !fixed[*i as usize]) {
-            graph.free_of[i as usize] = u32::try_from(graph.free.len()).unwrap_or(u32::MAX);
-            graph.free.push(i);
-            graph.neighbors.extend(row);
-            graph.starts.push(graph.neighbors.len());
-        }
-        graph
+        let mut laplacian = Matrix::new(free.len());
+        rows.iter_mut().for_each(|row| laplacian.push(row));
+        let mut grids = Grids::new(laplacian.clone(), laplacian);
+        // Positive definite, as a way leads to every free node; where none does its values stay as they are.
+        let _ = grids.update();
+        Self { fixed: held, free, grids }
     }
 
-    fn row(&self, i: usize) -> &[u32] {
-        &self.neighbors[self.starts[i]..self.starts[i + 1]]
-    }
-
-    /// `y = L x` over free nodes.
-    fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        for (i, y) in y.iter_mut().enumerate() {
-            let row = self.row(i);
-            let others = row.iter().filter_map(|j| x.get(self.free_of[*j as usize] as usize)).sum::<f64>();
-            *y = self.degree(i) * x[i] - others;
-        }
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "neighbors of a node")]
-    fn degree(&self, i: usize) -> f64 {
-        self.row(i).len() as f64
+    /// For [`solve`](Self::solve).
+    pub(super) fn work(&self) -> Work {
+        let zeros = vec![0.0; self.free.len()];
+        Work { b: zeros.clone(), x: zeros, scratch: self.grids.scratch() }
     }
 
     /// Sets the free entries of `values` to the harmonic function of the fixed ones; returns the steps it took.
-    pub(super) fn solve(&self, values: &mut [f64]) -> usize {
-        let n = self.free.len();
-        let fixed = |j: &&u32| self.free_of[**j as usize] == u32::MAX;
-        let mut r: Vec<f64> =
-            (0..n).map(|i| self.row(i).iter().filter(fixed).map(|j| values[*j as usize]).sum()).collect();
-        let (mut x, mut q) = (vec![0.0; n], vec![0.0; n]);
-        let precondition =
-            |r: &[f64]| -> Vec<f64> { r.iter().enumerate().map(|(i, r)| r / self.degree(i)).collect() };
-        let enough = GOOD * dot(&r, &r);
-        let mut z = precondition(&r);
-        let mut p = z.clone();
-        let mut rz = dot(&r, &z);
-        let mut steps = 0;
-        while dot(&r, &r) > enough && steps < STEPS {
-            self.multiply(&p, &mut q);
-            let alpha = rz / dot(&p, &q);
-            x.iter_mut().zip(&p).for_each(|(x, p)| *x += alpha * p);
-            r.iter_mut().zip(&q).for_each(|(r, q)| *r -= alpha * q);
-            z = precondition(&r);
-            let next = dot(&r, &z);
-            let beta = next / rz;
-            p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + beta * *p);
-            rz = next;
-            steps += 1;
-        }
-        self.free.iter().zip(x).for_each(|(i, x)| values[*i as usize] = x);
+    pub(super) fn solve(&self, values: &mut [f64], work: &mut Work) -> usize {
+        let Work { b, x, scratch } = work;
+        b.fill(0.0);
+        x.fill(0.0);
+        self.fixed.iter().for_each(|(row, i)| b[*row] += values[*i as usize]);
+        let (steps, _) = self.grids.solve(b, x, GOOD, scratch);
+        self.free.iter().zip(x.iter()).for_each(|(i, x)| values[*i as usize] = *x);
         steps
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
@@ -115,7 +93,7 @@ mod tests {
         let graph = Graph::new(&links, &fixed);
         let mut values = vec![0.0; 11];
         (values[0], values[10]) = (3.0, -2.0);
-        assert!(graph.solve(&mut values) <= 9, "a step a free node at most");
+        assert!(graph.solve(&mut values, &mut graph.work()) <= 1, "so few have a factor");
         for (i, v) in (0_u8..).zip(&values) {
             assert!((v - (3.0 - 0.5 * f64::from(i))).abs() < 1e-12, "{i}: {v}");
         }
@@ -140,7 +118,8 @@ mod tests {
             );
         }
         let mut values: Vec<f64> = want.iter().zip(&fixed).map(|(w, f)| if *f { *w } else { 0.0 }).collect();
-        Graph::new(&links, &fixed).solve(&mut values);
+        let graph = Graph::new(&links, &fixed);
+        graph.solve(&mut values, &mut graph.work());
         let worst = values.iter().zip(&want).map(|(v, w)| (v - w).abs()).fold(0.0, f64::max);
         // The residual is 1e-13 of the right side, the inverse's norm below 1/(1 − cos(π/11)) / 6 = 4.1 by its rows.
         assert!(worst < 1e-13 * 2.0e3 * 4.1 * 40.0, "{worst}");

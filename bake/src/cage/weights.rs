@@ -2,7 +2,7 @@
 //! rigging and animation of 3D characters, 2007, spread heat from the skin's side).
 
 use super::Cage;
-use super::harmonic::Graph;
+use super::harmonic::{Graph, Work};
 use super::surface::{Row, Surface};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -36,13 +36,13 @@ pub fn weights(surface: &Surface, cage: &Cage) -> NodeWeights {
         row.iter().for_each(|(node, w)| columns.entry(*node).or_default().push((i, *w)));
     }
     let columns: Vec<(u32, Vec<(usize, f64)>)> = columns.into_iter().collect();
-    let solve = |(node, fixed): &(u32, Vec<(usize, f64)>)| {
+    let solve = |work: &mut Work, (node, fixed): &(u32, Vec<(usize, f64)>)| {
         let mut values = vec![0.0; near.len()];
         fixed.iter().for_each(|(i, w)| values[*i] = *w);
-        graph.solve(&mut values);
+        graph.solve(&mut values, work);
         (*node, values)
     };
-    let solved: Vec<(u32, Vec<f64>)> = columns.par_iter().map(solve).collect();
+    let solved: Vec<(u32, Vec<f64>)> = columns.par_iter().map_init(|| graph.work(), solve).collect();
     gather(cage.rest.len(), &solved)
 }
 

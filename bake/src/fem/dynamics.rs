@@ -15,8 +15,8 @@ use super::mass::Mass;
 use super::newton::{Equilibrium, Newton, Tolerance};
 use super::potential::inertia::{Drag, Inertia};
 use super::potential::{self, Potential};
+use super::solver::Method;
 use super::stiffness::Stiffness;
-use faer::Par;
 use glam::DVec3;
 
 /// Places and velocities of all nodes.
@@ -58,12 +58,12 @@ impl BackwardEuler {
         potentials: &[&dyn Potential],
         mass: Mass,
         damping: Rayleigh,
-        parallel: Par,
+        method: Method,
     ) -> Result<Self, FactorError> {
         let inertia = Inertia { mass: &mass, to: Vec::new(), factor: 0.0 };
         let with: Vec<&dyn Potential> =
             potentials.iter().copied().chain([&inertia as &dyn Potential]).collect();
-        let newton = Newton::new(free, &with, parallel)?;
+        let newton = Newton::new(free, &with, method)?;
         let all = (damping.stiffness > 0.0).then(|| {
             let all = Free::new(mass.diagonal.len(), &[]);
             let matrix = all.stiffness(potentials);

@@ -6,18 +6,18 @@
 //!
 //! Far from the minimum the Hessian is that of elements without negative eigenvalues, so that `d` always leads down
 //! (Teran et al. 2005). As soon as a whole step was taken the true one is tried: it makes the end quadratic. If it
-//! has no Cholesky factor, the mean of the two is tried: a third fewer steps where a body slides along a shallow valley.
-//! A matrix that has none even so gets a growing multiple of the identity. Where rounding hides the decrease, the
+//! is not positive definite, the mean of the two is tried: a third fewer steps where a body slides along a shallow valley.
+//! A matrix that is not even so gets a growing multiple of the identity. Where rounding hides the decrease, the
 //! slope along `d` decides instead: `|d·∂E/∂x|` must fall by half (Hager, Zhang 2005, approximate Wolfe conditions).
 //!
 //! Where something must not be met the first `t` is what the potentials allow. Blocks of what touches have room made for
 //! them as they appear; a solve begins without any, so that it does not depend on those before.
 
 use super::assembly::{Assembly, Free};
-use super::cholesky::{Cholesky, FactorError};
+use super::cholesky::FactorError;
 use super::potential::{self, Potential};
+use super::solver::{Method, Solver};
 use super::stiffness::Stiffness;
-use faer::Par;
 use glam::DVec3;
 
 /// When to be content.
@@ -47,8 +47,8 @@ pub struct Equilibrium {
 pub struct Newton {
     free: Free,
     matrix: Stiffness,
-    factor: Cholesky,
-    parallel: Par,
+    solver: Solver,
+    method: Method,
     /// Pairs of rows that have room for what touches, in order.
     touching: Vec<(u32, u32)>,
 }
@@ -68,10 +68,10 @@ impl Newton {
     /// # Errors
     ///
     /// If there is not memory enough for the factor.
-    pub fn new(free: Free, potentials: &[&dyn Potential], parallel: Par) -> Result<Self, FactorError> {
+    pub fn new(free: Free, potentials: &[&dyn Potential], method: Method) -> Result<Self, FactorError> {
         let matrix = free.stiffness(potentials);
-        let factor = Cholesky::new(&matrix, parallel)?;
-        Ok(Self { free, matrix, factor, parallel, touching: Vec::new() })
+        let solver = Solver::new(&matrix, method)?;
+        Ok(Self { free, matrix, solver, method, touching: Vec::new() })
     }
 
     /// Which nodes move.
@@ -127,40 +127,43 @@ impl Newton {
             self.reserve(potentials, all)?;
         }
         self.assemble(potentials, x, *projected);
-        if self.factor.factorize(&self.matrix).is_err() {
-            self.factorize_safe(potentials, x, projected)?;
-        }
+        self.solve(slopes).or_else(|| self.solve_safe(potentials, x, slopes, projected))
+    }
+
+    /// `−H⁻¹ ∂E/∂x` with the matrix as it is; none if it is seen not to be positive definite.
+    fn solve(&mut self, slopes: &[DVec3]) -> Option<Vec<DVec3>> {
         let mut d: Vec<DVec3> = self.free.node.iter().map(|i| -slopes[*i as usize]).collect();
-        self.factor.solve(&mut d);
+        self.solver.solve(&self.matrix, &mut d).ok()?;
         d.iter().all(|d| d.is_finite()).then_some(d)
     }
 
-    /// A factor where the matrix, the true one if not `projected`, has none.
-    fn factorize_safe(
+    /// A direction where the matrix, the true one if not `projected`, gives none.
+    fn solve_safe(
         &mut self,
         potentials: &[&dyn Potential],
         x: &[DVec3],
+        slopes: &[DVec3],
         projected: &mut bool,
-    ) -> Option<()> {
+    ) -> Option<Vec<DVec3>> {
         if !*projected {
             *projected = true;
             let exact = self.matrix.clone();
             self.assemble(potentials, x, true);
             let safe = self.matrix.clone();
             self.matrix.blend(&exact, BLEND);
-            if self.factor.factorize(&self.matrix).is_ok() {
-                return Some(());
+            if let Some(d) = self.solve(slopes) {
+                return Some(d);
             }
             self.matrix = safe;
         }
-        self.factorize_shifted()
+        self.solve_shifted(slopes)
     }
 
     /// Makes room for blocks of what touches, and drops those that had some before.
     fn reserve(&mut self, potentials: &[&dyn Potential], touching: Vec<(u32, u32)>) -> Option<()> {
         self.touching = touching;
         self.matrix = self.free.stiffness_with(potentials, &self.touching);
-        self.factor = Cholesky::new(&self.matrix, self.parallel).ok()?;
+        self.solver = Solver::new(&self.matrix, self.method).ok()?;
         Some(())
     }
 
@@ -174,11 +177,14 @@ impl Newton {
         potentials.iter().for_each(|p| p.hessian(x, projected, &mut assembly));
     }
 
-    /// The factor of the matrix with as little more on the diagonal as makes it positive definite.
-    fn factorize_shifted(&mut self) -> Option<()> {
+    /// A direction by the matrix with as little more on the diagonal as makes it positive definite.
+    fn solve_shifted(&mut self, slopes: &[DVec3]) -> Option<Vec<DVec3>> {
         let mean = self.matrix.mean_diagonal();
         let mut shift: f64 = 0.0;
-        while self.factor.factorize(&self.matrix).is_err() {
+        loop {
+            if let Some(d) = self.solve(slopes) {
+                return Some(d);
+            }
             let more = if shift == 0.0 { 1e-10 * mean } else { 9.0 * shift };
             shift += more;
             if shift.is_nan() || shift > 1e4 * mean {
@@ -186,7 +192,6 @@ impl Newton {
             }
             self.matrix.shift(more);
         }
-        Some(())
     }
 
     /// The part of the step `d` with which nothing meets.

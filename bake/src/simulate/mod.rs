@@ -28,10 +28,10 @@ use crate::fem::newton::{Newton, Tolerance};
 use crate::fem::potential::load::Load;
 use crate::fem::potential::pull::{Pull, Spring};
 use crate::fem::potential::{Potential, solid::Solid};
+use crate::fem::solver::Method;
 use crate::fem::stiffness::FIXED;
 use crate::pose::Pose;
 use crate::{Error, Model, cage};
-use faer::Par;
 use glam::{DMat3, DMat4, DVec3};
 
 pub use settings::Settings;
@@ -110,8 +110,8 @@ impl<'m> Simulation<'m> {
             to: cage.rest[*node as usize],
         };
         let pull = Pull { springs: body.binding.springs.iter().map(spring).collect() };
-        let newton =
-            Newton::new(free, &[&flesh, &pull, &weight], Par::Seq).map_err(|e| refused(e.to_string()))?;
+        let newton = Newton::new(free, &[&flesh, &pull, &weight], Method::DIRECT)
+            .map_err(|e| refused(e.to_string()))?;
         Ok(Self {
             model,
             elements,

@@ -4,8 +4,8 @@ use super::Simulation;
 use crate::Error;
 use crate::fem::dynamics::BackwardEuler;
 use crate::fem::newton::Equilibrium;
+use crate::fem::solver::Method;
 use crate::pose::Pose;
-use faer::Par;
 use glam::DVec3;
 
 impl Simulation<'_> {
@@ -25,8 +25,13 @@ impl Simulation<'_> {
             Some(steps) => steps,
             None => {
                 let free = self.newton.free().clone();
-                match BackwardEuler::new(free, &self.potentials(), self.mass.clone(), self.damping, Par::Seq)
-                {
+                match BackwardEuler::new(
+                    free,
+                    &self.potentials(),
+                    self.mass.clone(),
+                    self.damping,
+                    Method::DIRECT,
+                ) {
                     Ok(steps) => steps,
                     Err(e) => return refused("memory", e.to_string(), "use a coarser cage"),
                 }

@@ -1,7 +1,6 @@
 //! A cantilever and a hanging bar against their closed forms, and Poisson's ratio of a stretched bar.
 
 use crate::shapes::{block, nodes, prism_block};
-use faer::Par;
 use glam::DVec3;
 use sinew_bake::fem::assembly::Free;
 use sinew_bake::fem::element::Elements;
@@ -12,11 +11,12 @@ use sinew_bake::fem::mass::Mass;
 use sinew_bake::fem::material::Lame;
 use sinew_bake::fem::newton::{Newton, Tolerance};
 use sinew_bake::fem::potential::{Potential, load::Load, solid::Solid};
+use sinew_bake::fem::solver::Method;
 
 /// Where nodes come to rest.
 fn settle(rest: &[DVec3], fixed: &[u32], potentials: &[&dyn Potential]) -> Vec<DVec3> {
     let mut x = rest.to_vec();
-    let mut newton = Newton::new(Free::new(rest.len(), fixed), potentials, Par::Seq).expect("memory");
+    let mut newton = Newton::new(Free::new(rest.len(), fixed), potentials, Method::DIRECT).expect("memory");
     let found = newton.minimize(potentials, &mut x, Tolerance { step: 1e-10, iterations: 50 });
     assert!(found.converged, "{found:?}");
     x

@@ -1,7 +1,6 @@
 //! Contact of a body with itself.
 
 use crate::shapes::{fat, nodes, noise, voxels};
-use faer::Par;
 use glam::{DMat3, DVec3};
 use sinew_bake::fem::assembly::{Assembly, Free};
 use sinew_bake::fem::drive::{Outcome, drive};
@@ -14,6 +13,7 @@ use sinew_bake::fem::potential::contact::{Barrier, Contact};
 use sinew_bake::fem::potential::load::Load;
 use sinew_bake::fem::potential::pull::{Pull, Spring};
 use sinew_bake::fem::potential::{Potential, energy, gradient, solid::Solid};
+use sinew_bake::fem::solver::Method;
 use sinew_bake::fem::surface::Surface;
 use std::collections::BTreeMap;
 
@@ -75,7 +75,7 @@ fn an_elbow_does_not_fold_through_itself() {
     let all: [&dyn Potential; 2] = [&elbow.body, &contact];
     for potentials in [&all[..1], &all] {
         let free = Free::new(elbow.rest.len(), &elbow.fixed);
-        let mut newton = Newton::new(free, potentials, Par::Seq).expect("memory");
+        let mut newton = Newton::new(free, potentials, Method::DIRECT).expect("memory");
         let mut x = elbow.rest.clone();
         let mut crossings = Vec::new();
         for k in 1..=15 {
@@ -143,7 +143,8 @@ fn what_is_fast_does_not_jump_over() {
         let pull = pulled(&rest, upper.clone(), 10.0, DVec3::new(0.0, -fall, 0.0));
         let run = |potentials: &[&dyn Potential]| {
             let mut x = rest.clone();
-            let mut newton = Newton::new(Free::new(x.len(), &fixed), potentials, Par::Seq).expect("memory");
+            let mut newton =
+                Newton::new(Free::new(x.len(), &fixed), potentials, Method::DIRECT).expect("memory");
             let found = newton.minimize(potentials, &mut x, Tolerance { step: 1e-9, iterations: 200 });
             assert!(
                 found.converged && found.energies.windows(2).all(|e| e[1] <= e[0] * (1.0 + 1e-12)),
@@ -177,7 +178,7 @@ fn ridges_meet_by_their_edges() {
     let potentials: [&dyn Potential; 2] = [&pull, &contact];
     let mut x = rest.clone();
     let free = Free::new(8, &[0, 1, 2, 3]);
-    let mut newton = Newton::new(free, &potentials, Par::Seq).expect("memory");
+    let mut newton = Newton::new(free, &potentials, Method::DIRECT).expect("memory");
     let found = newton.minimize(&potentials, &mut x, Tolerance { step: 1e-9, iterations: 200 });
     let (count, least) = contact.closest(&x);
     println!("ridges: {count} pairs, {least}, {} steps", found.steps.len());
@@ -194,7 +195,8 @@ fn parallel_edges_are_no_exception() {
         let pull = pulled(&rest, 16..rest.len(), 100.0, DVec3::new(0.0, -1.0, 0.0));
         let potentials: [&dyn Potential; 2] = [&pull, &contact];
         let mut x = rest.clone();
-        let mut newton = Newton::new(Free::new(x.len(), &fixed), &potentials, Par::Seq).expect("memory");
+        let mut newton =
+            Newton::new(Free::new(x.len(), &fixed), &potentials, Method::DIRECT).expect("memory");
         let found = newton.minimize(&potentials, &mut x, Tolerance { step: 1e-9, iterations: 200 });
         let (count, least) = contact.closest(&x);
         println!("{angle}: {count} pairs, {least}, {} steps, {:?}", found.steps.len(), found.energies.last());
@@ -212,7 +214,7 @@ fn what_cannot_be_is_named() {
     let (rest, surface) = plates(0.2);
     let contact = Contact::new(surface, Barrier { reach: 0.05, stiffness: 1e4 }).expect("settings");
     let fixed: Vec<u32> = (0..).take(rest.len()).collect();
-    let mut newton = Newton::new(Free::new(rest.len(), &fixed), &[&contact], Par::Seq).expect("memory");
+    let mut newton = Newton::new(Free::new(rest.len(), &fixed), &[&contact], Method::DIRECT).expect("memory");
     let mut x = rest.clone();
     let to: Vec<DVec3> =
         rest.iter().enumerate().map(|(i, x)| if i < 16 { *x } else { *x - DVec3::Y }).collect();
@@ -275,7 +277,7 @@ fn neither_threads_nor_history_change_a_bit() {
     let folded = |contact: &Contact| {
         let potentials: [&dyn Potential; 2] = [&elbow.body, contact];
         let free = Free::new(elbow.rest.len(), &elbow.fixed);
-        let mut newton = Newton::new(free, &potentials, Par::Seq).expect("memory");
+        let mut newton = Newton::new(free, &potentials, Method::DIRECT).expect("memory");
         let mut fold = || {
             let mut x = elbow.rest.clone();
             for degrees in [60.0, 120.0] {
@@ -333,7 +335,7 @@ fn creases_are_at_rest() {
     let fixed: Vec<u32> = (0..16).collect();
     let mut x = rest.clone();
     let potentials: [&dyn Potential; 2] = [&pull, &contact];
-    let mut newton = Newton::new(Free::new(x.len(), &fixed), &potentials, Par::Seq).expect("memory");
+    let mut newton = Newton::new(Free::new(x.len(), &fixed), &potentials, Method::DIRECT).expect("memory");
     let found = newton.minimize(&potentials, &mut x, Tolerance { step: 1e-9, iterations: 300 });
     assert!(found.converged && x[16..].iter().all(|x| (0.0..0.5e-3).contains(&x.y)), "{found:?}");
     // In one place there is nothing to keep apart.
@@ -361,7 +363,7 @@ fn motion_stops_at_what_it_meets() {
     let potentials: [&dyn Potential; 3] = [&body, &load, &contact];
     let damping = Rayleigh { mass: 0.5, stiffness: 0.02 };
     let free = Free::new(rest.len(), &fixed);
-    let mut motion = BackwardEuler::new(free, &potentials, mass, damping, Par::Seq).expect("memory");
+    let mut motion = BackwardEuler::new(free, &potentials, mass, damping, Method::DIRECT).expect("memory");
     let mut state = State { x: rest.clone(), v: vec![DVec3::ZERO; rest.len()] };
     state.v[16..].fill(DVec3::new(0.0, -30.0, 0.0));
     let h = 1.0 / 30.0;

@@ -1,7 +1,6 @@
 //! What holds for every element and energy: patch tests, rigid motion, slopes, threads.
 
 use crate::shapes::{block, fat, nodes, noise, prism_block};
-use faer::Par;
 use glam::{DMat3, DVec3};
 use sinew_bake::fem::assembly::{Assembly, Free};
 use sinew_bake::fem::element::Elements;
@@ -10,6 +9,7 @@ use sinew_bake::fem::energy::{
 };
 use sinew_bake::fem::newton::{Newton, Tolerance};
 use sinew_bake::fem::potential::{Potential, energy, gradient, solid::Solid};
+use sinew_bake::fem::solver::Method;
 
 /// Names, and what has them.
 type Bodies = Vec<(&'static str, Box<dyn Potential>)>;
@@ -60,7 +60,7 @@ fn patch_tests_are_exact() {
             let mut noise = noise(1);
             free.node.iter().for_each(|i| x[*i as usize] += 0.02 * DVec3::new(noise(), noise(), noise()));
             let potentials = [body.as_ref()];
-            let mut newton = Newton::new(free, &potentials, Par::Seq).expect("memory");
+            let mut newton = Newton::new(free, &potentials, Method::DIRECT).expect("memory");
             let found = newton.minimize(&potentials, &mut x, Tolerance { step: 1e-9, iterations: 50 });
             let off = x.iter().zip(&want).map(|(x, want)| x.distance(*want)).fold(0.0, f64::max);
             assert!(found.converged && off < 1e-10 * 0.5, "{name}: {off}, {found:?}");

@@ -1,7 +1,6 @@
 //! What takes linear solves alone: the Poisson system, projective dynamics, co-rotated elasticity in given frames.
 
 use crate::shapes::{block, fat, nodes, noise, prism_block};
-use faer::Par;
 use glam::{DMat3, DVec3};
 use sinew_bake::builtin;
 use sinew_bake::cage::layers::{Layers, Settings};
@@ -13,6 +12,7 @@ use sinew_bake::fem::newton::{Newton, Tolerance};
 use sinew_bake::fem::poisson::Poisson;
 use sinew_bake::fem::potential::{Potential, solid::Solid, warped::Warped};
 use sinew_bake::fem::projective::Projective;
+use sinew_bake::fem::solver::Method;
 
 /// A turn that grows along the body, a bend, and waves: nothing that an element could hold exactly, folds aside.
 fn bent(x: DVec3) -> DVec3 {
@@ -91,7 +91,7 @@ fn pulled() -> (Vec<DVec3>, Elements<4>, Vec<u32>, Vec<DVec3>) {
 /// Newton's minimum.
 fn newton(potential: &dyn Potential, count: usize, fixed: &[u32], start: &[DVec3]) -> (Vec<DVec3>, usize) {
     let mut x = start.to_vec();
-    let mut newton = Newton::new(Free::new(count, fixed), &[potential], Par::Seq).expect("memory");
+    let mut newton = Newton::new(Free::new(count, fixed), &[potential], Method::DIRECT).expect("memory");
     let found = newton.minimize(&[potential], &mut x, Tolerance { step: 1e-10, iterations: 100 });
     assert!(found.converged, "{found:?}");
     (x, found.steps.len())

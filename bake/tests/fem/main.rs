@@ -15,5 +15,6 @@ mod modes;
 mod newton;
 mod shapes;
 mod shell;
+mod solver;
 mod sphere;
 mod time;

@@ -1,7 +1,6 @@
 //! Newton's method: down in every step, quadratic at the end, from starts that are beyond all reason.
 
 use crate::shapes::{block, fat, nodes, noise, prism_block};
-use faer::Par;
 use glam::{DMat3, DVec3};
 use sinew_bake::fem::assembly::Free;
 use sinew_bake::fem::element::Elements;
@@ -10,13 +9,14 @@ use sinew_bake::fem::energy::{
 };
 use sinew_bake::fem::newton::{Equilibrium, Newton, Tolerance};
 use sinew_bake::fem::potential::{Potential, solid::Solid};
+use sinew_bake::fem::solver::Method;
 
 /// Of voxels, m.
 const EDGE: f64 = 0.1;
 const TIGHT: Tolerance = Tolerance { step: 1e-10, iterations: 300 };
 
 fn minimize(body: &dyn Potential, fixed: &[u32], x: &mut [DVec3]) -> Equilibrium {
-    let mut newton = Newton::new(Free::new(x.len(), fixed), &[body], Par::Seq).expect("memory");
+    let mut newton = Newton::new(Free::new(x.len(), fixed), &[body], Method::DIRECT).expect("memory");
     newton.minimize(&[body], x, TIGHT)
 }
 

@@ -2,13 +2,13 @@
 
 use crate::shapes::noise;
 use core::f64::consts::PI;
-use faer::Par;
 use glam::{DMat3, DVec3};
 use sinew_bake::fem::assembly::{Assembly, Free};
 use sinew_bake::fem::newton::{Newton, Tolerance};
 use sinew_bake::fem::potential::load::Load;
 use sinew_bake::fem::potential::shell::{Shell, Skin};
 use sinew_bake::fem::potential::{Potential, energy, gradient};
+use sinew_bake::fem::solver::Method;
 use sinew_bake::fem::surface::Surface;
 
 const SKIN: Skin = Skin { bending: 2e-3, stretching: 3e-2 };
@@ -146,7 +146,8 @@ fn a_clamped_strip_sinks_as_a_beam() {
         load.forces[n as usize + 1].z = -force;
         let fixed = [0, 1, n + 2, n + 3, n + 4];
         let potentials: [&dyn Potential; 2] = [&shell, &load];
-        let mut newton = Newton::new(Free::new(rest.len(), &fixed), &potentials, Par::Seq).expect("memory");
+        let mut newton =
+            Newton::new(Free::new(rest.len(), &fixed), &potentials, Method::DIRECT).expect("memory");
         let mut x = rest.clone();
         let found = newton.minimize(&potentials, &mut x, Tolerance { step: 1e-12, iterations: 100 });
         assert!(found.converged, "{found:?}");

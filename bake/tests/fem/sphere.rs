@@ -2,7 +2,6 @@
 
 use crate::modes::slowest;
 use crate::shapes::{nodes, voxels};
-use faer::Par;
 use glam::DVec3;
 use sinew_bake::fem::assembly::Free;
 use sinew_bake::fem::dynamics::{BackwardEuler, Rayleigh, State, explicit_step};
@@ -12,6 +11,7 @@ use sinew_bake::fem::mass::Mass;
 use sinew_bake::fem::material::Lame;
 use sinew_bake::fem::newton::Tolerance;
 use sinew_bake::fem::potential::solid::Solid;
+use sinew_bake::fem::solver::Method;
 
 /// Voxels of 0.2 that a sphere of radius 1 reaches into; a beam through the middle along y is held.
 fn sphere() -> (Vec<DVec3>, Elements<4>, Vec<u32>) {
@@ -64,7 +64,7 @@ fn implicit_steps_follow_a_burst() {
     for (e, frames) in [(5e6, 120), (5e4, 36)] {
         let body = body(&tets, e);
         let mut steps =
-            BackwardEuler::new(free.clone(), &[&body], mass.clone(), Rayleigh::default(), Par::Seq)
+            BackwardEuler::new(free.clone(), &[&body], mass.clone(), Rayleigh::default(), Method::DIRECT)
                 .expect("memory");
         let mut state = State { x: rest.clone(), v: vec![DVec3::ZERO; rest.len()] };
         let mut away = Vec::new();

@@ -2,7 +2,6 @@
 
 use crate::modes::slowest;
 use crate::shapes::{block, fat, nodes, noise};
-use faer::Par;
 use glam::{DMat3, DVec3};
 use sinew_bake::fem::assembly::Free;
 use sinew_bake::fem::dynamics::{BackwardEuler, Rayleigh, State};
@@ -10,6 +9,7 @@ use sinew_bake::fem::energy::{corotated::Corotated, neo_hookean::NeoHookean};
 use sinew_bake::fem::mass::Mass;
 use sinew_bake::fem::newton::Tolerance;
 use sinew_bake::fem::potential::solid::Solid;
+use sinew_bake::fem::solver::Method;
 
 const TIGHT: Tolerance = Tolerance { step: 1e-11, iterations: 50 };
 
@@ -26,8 +26,8 @@ fn momentum_is_kept_in_free_flight() {
     let momentum = |s: &State| mass.times(&s.v).into_iter().sum::<DVec3>();
     let before = momentum(&state);
     let free = Free::new(rest.len(), &[]);
-    let mut steps =
-        BackwardEuler::new(free, &[&body], mass.clone(), Rayleigh::default(), Par::Seq).expect("memory");
+    let mut steps = BackwardEuler::new(free, &[&body], mass.clone(), Rayleigh::default(), Method::DIRECT)
+        .expect("memory");
     for _ in 0..60 {
         let to: Vec<DVec3> = state.x.iter().zip(&state.v).map(|(x, v)| *x + *v / 60.0).collect();
         let found = steps.step(&[&body], &mut state, &to, 1.0 / 60.0, TIGHT);
@@ -51,8 +51,8 @@ fn a_mode_decays_as_it_must() {
     let amplitude = 1e-7;
     let x = rest.iter().zip(&mode).map(|(x, m)| *x + amplitude * *m).collect();
     let mut state = State { x, v: vec![DVec3::ZERO; rest.len()] };
-    let mut steps =
-        BackwardEuler::new(free, &[&body], mass.clone(), Rayleigh::default(), Par::Seq).expect("memory");
+    let mut steps = BackwardEuler::new(free, &[&body], mass.clone(), Rayleigh::default(), Method::DIRECT)
+        .expect("memory");
     let tolerance = Tolerance { step: 1e-15, iterations: 4 };
     let weighed = mass.times(&mode);
     let along = |v: &[DVec3]| v.iter().zip(&weighed).map(|(v, m)| v.dot(*m)).sum::<f64>();
@@ -82,7 +82,8 @@ fn damping_is_what_was_asked_for() {
     let (mode, square) = slowest(&rest, &free, &body, &mass);
     let (h, alpha, beta) = (0.3 / square.sqrt(), 0.2 * square.sqrt(), 0.5 / square.sqrt());
     let damping = Rayleigh { mass: alpha, stiffness: beta };
-    let mut steps = BackwardEuler::new(free, &[&body], mass.clone(), damping, Par::Seq).expect("memory");
+    let mut steps =
+        BackwardEuler::new(free, &[&body], mass.clone(), damping, Method::DIRECT).expect("memory");
     let (q, p) = (1e-7, 2e-7 * square.sqrt());
     let x = rest.iter().zip(&mode).map(|(x, m)| *x + q * *m).collect();
     let mut state = State { x, v: mode.iter().map(|m| p * *m).collect() };
@@ -106,8 +107,8 @@ fn motion_does_not_know_north() {
         let tets = sinew_bake::fem::element::Elements::tets(&rest, tets.nodes.clone()).expect("tetrahedra");
         let body = Solid::new(tets, NeoHookean::new(fat()));
         let free = Free::new(rest.len(), &[0, 1]);
-        let mut steps =
-            BackwardEuler::new(free, &[&body], mass.clone(), Rayleigh::default(), Par::Seq).expect("memory");
+        let mut steps = BackwardEuler::new(free, &[&body], mass.clone(), Rayleigh::default(), Method::DIRECT)
+            .expect("memory");
         let mut noise = noise(9);
         let v = rest.iter().map(|_| turn * DVec3::new(noise(), noise(), noise())).collect();
         let mut state = State { x: rest, v };

@@ -17,6 +17,7 @@ use sinew_bake::fem::energy::{Energy, neo_hookean::NeoHookean};
 use sinew_bake::fem::material::Lame;
 use sinew_bake::fem::newton::{Newton, Tolerance};
 use sinew_bake::fem::potential::{Potential, solid::Solid};
+use sinew_bake::fem::solver::{Method, Solver};
 use sinew_bake::fem::stiffness::{FIXED, Stiffness};
 use sinew_bake::fem::svd::Svd;
 use sinew_bake::pose::Pose;
@@ -132,11 +133,14 @@ fn matrix(
             }
             black_box(d);
         });
+        let mut grids = Solver::new(&stiffness, Method::Multigrid).map_err(|e| refused(e.to_string()))?;
+        let cycles = best(|| drop(black_box(grids.solve(&stiffness, &mut right.clone()))));
         let matrix = scalars(&stiffness).map_err(|e| refused(format!("{e:?}")))?;
         let column = Mat::from_fn(3 * right.len(), 1, |r, _| right[r / 3][r % 3]);
         let peer = best(|| drop(black_box(matrix.sp_cholesky(Side::Lower).map(|llt| llt.solve(&column)))));
         results.push(json!({"name": "fem-linear", "case": case, "value": 1e3 * ours, "unit": "ms",
-            "peers": [{"name": "faer alone", "value": 1e3 * peer}]}));
+            "peers": [{"name": "faer alone", "value": 1e3 * peer},
+                {"name": "core's CG with multigrid", "value": 1e3 * cycles}]}));
     }
     Ok(results)
 }
@@ -212,7 +216,8 @@ pub(super) fn prisms(input: Option<&Path>) -> Result<Value, Error> {
     let pose = pose.unwrap_or_else(|| Pose::rest(&model)).split_root(&model).1;
     let mut x = skinned(&model, &layers, &pose);
     let start = Instant::now();
-    let mut newton = Newton::new(free, &[&solid], Par::rayon(0)).map_err(|e| refused(e.to_string()))?;
+    let mut newton =
+        Newton::new(free, &[&solid], Method::Direct(Par::rayon(0))).map_err(|e| refused(e.to_string()))?;
     let found = newton.minimize(&[&solid], &mut x, Tolerance { step: 1e-5, iterations: 60 });
     let seconds = start.elapsed().as_secs_f64();
     Ok(json!({"name": "fem-prisms", "case": case, "value": seconds, "unit": "s", "limit": 6.0, "free": count,
