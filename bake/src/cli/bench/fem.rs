@@ -216,8 +216,7 @@ pub(super) fn prisms(input: Option<&Path>) -> Result<Value, Error> {
     let pose = pose.unwrap_or_else(|| Pose::rest(&model)).split_root(&model).1;
     let mut x = skinned(&model, &layers, &pose);
     let start = Instant::now();
-    let mut newton =
-        Newton::new(free, &[&solid], Method::Direct(Par::rayon(0))).map_err(|e| refused(e.to_string()))?;
+    let mut newton = Newton::new(free, &[&solid], Method::DIRECT).map_err(|e| refused(e.to_string()))?;
     let found = newton.minimize(&[&solid], &mut x, Tolerance { step: 1e-5, iterations: 60 });
     let seconds = start.elapsed().as_secs_f64();
     Ok(json!({"name": "fem-prisms", "case": case, "value": seconds, "unit": "s", "limit": 6.0, "free": count,

@@ -69,6 +69,17 @@ impl<const N: usize, E: Energy> Solid<N, E> {
     }
 }
 
+/// Adds elements' blocks, one element after the other.
+fn add<const N: usize>(nodes: &[[u32; N]], matrices: &[[[DMat3; N]; N]], out: &mut Assembly<'_>) {
+    for (nodes, matrix) in nodes.iter().zip(matrices) {
+        for i in 0..N {
+            for j in 0..=i {
+                out.add(nodes[i], nodes[j], matrix[i][j]);
+            }
+        }
+    }
+}
+
 /// `Hₖₗ`: rows of column `k` of `F` against those of column `l`.
 fn blocks(h: &Hessian) -> [[DMat3; 3]; 3] {
     [0, 1, 2].map(|k| {
@@ -104,20 +115,20 @@ impl<const N: usize, E: Energy> Potential for Solid<N, E> {
     }
 
     fn hessian(&self, x: &[DVec3], projected: bool, out: &mut Assembly<'_>) {
-        let mut matrices = Vec::with_capacity(CHUNK.min(self.elements.len()));
-        for (c, chunk) in self.elements.nodes.chunks(CHUNK).enumerate() {
-            (0..chunk.len())
+        let count = self.elements.len();
+        let make = |from: usize, matrices: &mut Vec<_>| {
+            (from.min(count)..count.min(from + CHUNK))
                 .into_par_iter()
                 .with_min_len(16)
-                .map(|e| self.stiffness(c * CHUNK + e, x, projected))
-                .collect_into_vec(&mut matrices);
-            for (nodes, matrix) in chunk.iter().zip(&matrices) {
-                for i in 0..N {
-                    for j in 0..=i {
-                        out.add(nodes[i], nodes[j], matrix[i][j]);
-                    }
-                }
-            }
+                .map(|e| self.stiffness(e, x, projected))
+                .collect_into_vec(matrices);
+        };
+        let (mut matrices, mut next) = (Vec::new(), Vec::new());
+        make(0, &mut matrices);
+        for (c, nodes) in self.elements.nodes.chunks(CHUNK).enumerate() {
+            // While one chunk is summed up the next is made.
+            rayon::join(|| make((c + 1) * CHUNK, &mut next), || add(nodes, &matrices, out));
+            core::mem::swap(&mut matrices, &mut next);
         }
     }
 
