@@ -82,7 +82,7 @@ impl<'a, V> Memory<'a, V> {
 /// ```
 /// use sinew::kernel::{cg::{self, End, Jacobi, Memory, Until}, csr::Csr};
 /// let a = Csr { starts: &[0, 2, 4], columns: &[0, 1, 0, 1], entries: &[4.0, 1.0, 1.0, 3.0] };
-/// let (mut x, mut memory) = ([0.0; 2], [0.0; 8]);
+/// let (mut x, mut memory) = ([0.0_f64; 2], [0.0; 8]);
 /// let until = Until { share: 1e-12, iterations: 10 };
 /// let m = &mut Jacobi(&[1.0 / 4.0, 1.0 / 3.0]);
 /// let (iterations, end) = cg::solve(&a, m, &[1.0, 2.0], &mut x, until, &mut Memory::new(&mut memory));
@@ -196,7 +196,7 @@ mod tests {
         for (entry, b) in [(-1.0, 1.0), (0.0, 1.0), (f64::NAN, 1.0), (2.0, f64::NAN), (f64::INFINITY, 1.0)] {
             let entries = [1.0, entry];
             let a = Csr { starts: &starts, columns: &[0, 1], entries: &entries };
-            let (mut x, mut memory) = ([0.0; 2], [0.0; 8]);
+            let (mut x, mut memory) = ([0.0_f64; 2], [0.0; 8]);
             let until = Until { share: 1e-9, iterations: 5 };
             let (_, end) =
                 solve(&a, &mut Jacobi(&[1.0, 1.0]), &[1.0, b], &mut x, until, &mut Memory::new(&mut memory));
